@@ -37,7 +37,7 @@ def _greatest(values: np.ndarray, first: int, last: int) -> list[float]:
     return [one.max() if one.size else -np.inf for one in windows]
 
 
-def test_full_throttle_shifts_through_all_gears_and_narrowly_violates_requirement_at1() -> None:
+def test_full_throttle_uses_all_gears() -> None:
     from arch_formulas import AUTOMATIC_TRANSMISSION
     from arch_models import AT_STEP, automatic_transmission
 
@@ -48,7 +48,7 @@ def test_full_throttle_shifts_through_all_gears_and_narrowly_violates_requiremen
     assert AUTOMATIC_TRANSMISSION["AT2"](out) > 0.0
 
 
-def test_followers_keep_between_five_and_twenty_behind_a_slow_leader() -> None:
+def test_followers_keep_their_distance() -> None:
     from arch_models import CC_STEP, chasing_cars
 
     out = chasing_cars(np.tile([0.3, 0.3], (round(100 / CC_STEP) + 1, 1)))
@@ -58,7 +58,7 @@ def test_followers_keep_between_five_and_twenty_behind_a_slow_leader() -> None:
     assert out["y1"][-1] < -50.0  # the leader approaches the speed 1
 
 
-def test_the_turbine_stays_at_its_rated_speed_in_a_steady_wind() -> None:
+def test_turbine_keeps_its_rated_speed() -> None:
     from arch_formulas import WIND_TURBINE
     from arch_models import WT_STEP, wind_turbine
 

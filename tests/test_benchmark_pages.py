@@ -20,7 +20,7 @@ SCRIPT = re.compile(r"python (benchmarks/[\w/]+\.py)([^#\n`]*)")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_each_page_is_in_the_index_and_in_the_menu(page: Path) -> None:
+def test_each_page_is_in_index_and_menu(page: Path) -> None:
     assert f"(benchmarks/{page.name})" in INDEX.read_text("utf-8")
     assert f'"benchmarks/{page.name}"' in (ROOT / "website" / "zensical.toml").read_text("utf-8")
 

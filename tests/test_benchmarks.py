@@ -140,7 +140,7 @@ def test_packages_that_the_benchmarks_import_are_declared() -> None:
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
-def test_every_script_starts_and_knows_the_arguments_of_its_smallest_run(script: Path) -> None:
+def test_every_script_knows_its_smallest_run(script: Path) -> None:
     arguments = SMALLEST.get(script.stem, [])
     arguments = arguments[: arguments.index("--")] if "--" in arguments else arguments
     done = subprocess.run(
@@ -150,7 +150,7 @@ def test_every_script_starts_and_knows_the_arguments_of_its_smallest_run(script:
     assert done.stdout.startswith("usage: ")
 
 
-def test_every_script_has_a_smallest_run_or_a_reason_for_having_none() -> None:
+def test_missing_smallest_run_has_a_reason() -> None:
     names = [path.stem for path in SCRIPTS]
     assert sorted(names) == sorted({*names}) == sorted([*SMALLEST, *NOT_RUN])
 

@@ -163,7 +163,7 @@ def test_the_github_action_compares_and_keeps_the_exit_status(project: Path, rep
     assert "❌ degraded" in (project / "summary.md").read_text()
 
 
-def test_the_github_action_writes_one_comment_and_later_edits_it(project: Path) -> None:
+def test_github_action_edits_its_comment(project: Path) -> None:
     assert run("Comment", project, tests="t").returncode == 0
     assert not (project / "gh.txt").exists()
     results(project)

@@ -60,7 +60,7 @@ def outside_code(page: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_each_table_has_a_heading_and_rows_of_equal_length(page: Path) -> None:
+def test_table_rows_have_equal_length(page: Path) -> None:
     for table in re.findall(r"(?:^\|.*\n)+", "\n".join(outside_code(page)) + "\n", re.MULTILINE):
         rows = table.splitlines()
         assert len(rows) > 1, rows[0]

@@ -109,7 +109,7 @@ def test_a_repair_by_hand_fits_its_files(task: Path, tmp_path: Path) -> None:
             compile(text, name, "exec")
 
 
-def test_the_second_half_of_the_tasks_has_every_kind_of_defect() -> None:
+def test_second_half_has_every_kind_of_defect() -> None:
     kinds = [answer(task)["kind"] for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_2"]
     assert {kind: kinds.count(kind) for kind in kinds} == {
         "permanent": 2,
@@ -348,7 +348,7 @@ KINDS = {  # kinds of defects in the tasks of each set
 
 
 @pytest.mark.parametrize("folder", KINDS)
-def test_each_set_has_every_kind_of_defect_and_states_where_drifts_occur(folder: str) -> None:
+def test_each_set_has_every_kind_of_defect(folder: str) -> None:
     known = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == folder]
     assert sorted(one["kind"] for one in known) == KINDS[folder]
     assert all(one["practice"] for one in known)
@@ -369,7 +369,7 @@ def worlds(folder: str, *options: str) -> tuple[Rates, Rates]:
     return success, reward
 
 
-def test_a_repair_by_hand_restores_a_task_of_the_fourth_set() -> None:
+def test_hand_repair_restores_a_fourth_task() -> None:
     success, _ = worlds("drift_judging_4", "press_brake", "--by-hand", "--episodes", "2")
     assert success == {"press_brake": (1.0, 1.0)}
 
@@ -408,7 +408,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_24",
     ],
 )
-def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
+def test_hand_repairs_restore_the_reward(folder: str) -> None:
     tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == folder]
     before, after = worlds(folder)[0], worlds(folder, "--by-hand")[0]
     assert set(before) == set(after) == {task.name for task in tasks}

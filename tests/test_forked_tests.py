@@ -91,7 +91,7 @@ def test_marked_functions_keep_their_docstrings_and_line_numbers(modules: Any) -
         }
 
 
-def test_each_line_with_a_fault_is_among_the_lines_of_a_mark(modules: Any) -> None:
+def test_each_faulty_line_has_a_mark(modules: Any) -> None:
     """Otherwise a fault counts as unreached although tests run it."""
     for file in sorted((BENCHMARKS.parent / "pytest_tarl" / "bags").glob("*.py")):
         _, found = modules.reach_marks.marked(ast.parse(file.read_bytes()), 0)
@@ -129,9 +129,7 @@ def other():
         ("[x / 2", "[x * 2", ["other()"]),
     ],
 )
-def test_a_fault_is_put_into_the_functions_of_a_process(
-    modules: Any, was: str, now: str, calls: list[str]
-) -> None:
+def test_fault_is_put_into_functions(modules: Any, was: str, now: str, calls: list[str]) -> None:
     every = ["half(4)", "C().half(4)", "other()"]
     space, text = functions(HALF), HALF.replace(was, now)
     known = modules.forked_tests.functions()["half.py"]
@@ -156,7 +154,7 @@ def test_functions_that_only_moved_are_left_alone(modules: Any) -> None:
     assert space["other"].__code__ is before
 
 
-def test_a_fault_that_changes_the_variables_of_a_closure_is_refused(modules: Any) -> None:
+def test_fault_in_closure_variables_is_refused(modules: Any) -> None:
     text = "def outer(a):\n    def inner():\n        print(a)\n        return 1\n    return inner\n"
     inner = functions(text)["outer"](1)
     with pytest.raises(ValueError, match="free vars"):
@@ -255,7 +253,7 @@ def test_the_measured_tests_reach_lines_also_in_their_processes(measured: Any, m
         (13, "-", [], "unreached"),
     ],
 )
-def test_only_a_test_that_passes_without_the_fault_can_catch_the_fault(
+def test_only_a_passing_test_can_catch_a_fault(
     modules: Any, project: Path, forked: Any, line: int, was: str, tests: list[str], word: str
 ) -> None:
     file = project / "pack" / "half.py"

@@ -76,7 +76,7 @@ def test_without_a_documentation_address_there_are_no_links(stated, monkeypatch)
     assert "informationUri" not in json.dumps(document(Result()))
 
 
-def test_a_source_tree_that_is_not_installed_has_no_links(monkeypatch):
+def test_uninstalled_source_tree_has_no_links(monkeypatch):
     def missing(_: str) -> Message:
         raise PackageNotFoundError("tarl")
 
@@ -84,7 +84,7 @@ def test_a_source_tree_that_is_not_installed_has_no_links(monkeypatch):
     assert documentation.rule_page("TARL101") == ""
 
 
-def test_the_editor_links_the_code_of_a_finding_to_its_page(monkeypatch):
+def test_editor_links_a_code_to_its_page(monkeypatch):
     pytest.importorskip("lsprotocol")
     from pytest_tarl.editor.findings import diagnostics
     from pytest_tarl.editor.positions import Places

@@ -82,7 +82,7 @@ def test_the_files_that_a_recipe_names_exist(page: Path) -> None:
     assert [name for name in written if not any(path.endswith(f"/{name}") for path in tracked)] == []
 
 
-def test_the_rule_of_the_recipe_reports_the_nodes_that_it_declares_invalid() -> None:
+def test_recipe_rule_reports_its_invalid_nodes() -> None:
     (code,) = snippets("rule.md", "python")
     rule = made(code)
     for text, expected in [*((t, True) for t in rule.INVALID), *((t, False) for t in rule.VALID)]:
@@ -107,9 +107,7 @@ def test_the_recipe_of_a_format_gives_a_document(tmp_path: Path) -> None:
     assert "/out, 1" in rows[2][3]
 
 
-def test_the_model_of_the_recipe_replaces_the_default_model_of_a_call(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_recipe_model_replaces_the_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (code,) = snippets("model.md", "python")
     assert [flow.kind for flow in analysed(tmp_path, node=NODE).flows] == ["explicit"]
     model = made(
@@ -119,7 +117,7 @@ def test_the_model_of_the_recipe_replaces_the_default_model_of_a_call(
     assert [flow.kind for flow in analysed(tmp_path, node=NODE).flows] != ["explicit"]
 
 
-def test_the_recipe_of_a_ros_api_passes_its_own_test(start, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_recipe_ros_api_passes_its_test(start, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     test, function = snippets("ros.md", "python")
     assert STANDINS["rospy.names"] == "rospy.node"
     written = made(function, this_node=rospy_node.this_node)
@@ -139,7 +137,7 @@ def test_the_recipe_of_a_template_writes_its_example(tmp_path: Path) -> None:
     assert apply_edits(source, edits) == example["after"]
 
 
-def test_the_message_type_of_the_recipe_passes_its_own_test(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_recipe_message_type_passes_its_test(monkeypatch: pytest.MonkeyPatch) -> None:
     (definition,) = snippets("message.md", "text")
     (test,) = snippets("message.md", "python")
     assert could_be_package("depth_msgs")
@@ -148,7 +146,7 @@ def test_the_message_type_of_the_recipe_passes_its_own_test(monkeypatch: pytest.
     made(test, find_class=find_class, pytest=pytest).test_the_new_type_has_its_fields_and_constants()
 
 
-def test_the_search_of_the_recipe_finds_the_constant_that_gains() -> None:
+def test_recipe_search_finds_the_constant() -> None:
     (code,) = snippets("search.md", "python")
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -68,7 +68,7 @@ def test_faults_are_injected_into_augmented_assignments(sown: Any, tmp_path: Pat
     assert mutated(sown, tmp_path, text)
 
 
-def test_a_match_statement_has_the_line_numbers_of_its_subject(sown: Any, tmp_path: Path) -> None:
+def test_match_statement_has_the_lines_of_its_subject(sown: Any, tmp_path: Path) -> None:
     file = tmp_path / "module.py"
     file.write_text("def f(a):\n    match a + 1:\n        case 1:\n            return a < 2\n")
     assert {(one.kind.split()[0], one.lines) for one in sown.faults(file, "module.py")} == {
@@ -99,7 +99,7 @@ def h(): return 1
 """
 
 
-def test_faults_that_do_not_compile_are_left_out_wherever_they_are(sown: Any, tmp_path: Path) -> None:
+def test_uncompilable_faults_are_left_out(sown: Any, tmp_path: Path) -> None:
     file, data = tmp_path / "module.py", INSIDE.encode()
     file.write_text(INSIDE)
 
@@ -134,7 +134,7 @@ def runner(mutants: Any, tmp_path: Path) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize(("tests", "word"), TESTS.items(), ids=range(len(TESTS)))
-def test_only_a_test_that_passes_without_the_fault_can_catch_the_fault(
+def test_only_a_passing_test_catches_the_fault(
     mutants: Any, sown: Any, tmp_path: Path, runner: Any, tests: str, word: str
 ) -> None:
     file = tmp_path / "half.py"
@@ -147,7 +147,7 @@ def test_only_a_test_that_passes_without_the_fault_can_catch_the_fault(
     assert file.read_text() == "def half(x):\n    return x / 2\n"
 
 
-def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
+def test_endless_tests_catch_no_faults(
     mutants: Any, sown: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def tested(_copy: Path, tests: list[str], limit: float, _runner: object) -> tuple[int, str]:
@@ -164,7 +164,7 @@ def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
         assert word == "unclear"
 
 
-def test_a_test_that_does_not_end_because_of_the_fault_catches_it(
+def test_test_made_endless_by_a_fault_catches_it(
     mutants: Any, sown: Any, tmp_path: Path, runner: Any
 ) -> None:
     file = tmp_path / "half.py"
@@ -188,9 +188,7 @@ def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
     assert reached.within(0.1, order, "package/half.py") == order[:1]
 
 
-def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
-    mutants: Any, sown: Any, tmp_path: Path, runner: Any
-) -> None:
+def test_tests_with_their_own_ini_run_alone(mutants: Any, sown: Any, tmp_path: Path, runner: Any) -> None:
     file = tmp_path / "half.py"
     file.write_text("def half(x):\n    return x / 2\n")
     own = tmp_path / "tests" / "own"
@@ -209,9 +207,7 @@ def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
     assert mutants.tried(fault, tmp_path, names[:1], dict.fromkeys(names, 1.0), runner).word == "survived"
 
 
-def test_without_coverage_each_file_of_tests_runs_for_each_fault(
-    mutants: Any, tmp_path: Path, runner: Any
-) -> None:
+def test_all_test_files_run_without_coverage(mutants: Any, tmp_path: Path, runner: Any) -> None:
     (tmp_path / "test_a.py").write_text("def test_a(): pass\n")
     (tmp_path / "test_half.py").write_text("def test_b(): assert 0\n")
     files = ["test_half.py", "test_a.py"]

@@ -125,7 +125,7 @@ def test_the_lock_pins_all_requirements_of_pyproject_with_digests() -> None:
         assert not re.search(r"https?://|file:", re.sub(r"^#.*$", "", lock.read_text(), flags=re.MULTILINE))
 
 
-def test_the_bill_of_materials_names_user_dependencies_and_is_reproducible(tmp_path: Path) -> None:
+def test_bill_of_materials_is_reproducible(tmp_path: Path) -> None:
     wheel = tmp_path / "tarl-0.1.0-py3-none-any.whl"
     lines = [f"Requires-Dist: {one}" for one in requires("tarl") or ()]
     with zipfile.ZipFile(wheel, "w") as archive:
@@ -152,7 +152,7 @@ def test_a_release_is_reproducible_to_the_byte() -> None:
 @pytest.mark.parametrize(
     ("enabled", "refused"), [(None, False), (lambda: True, False), (lambda: False, True)]
 )
-def test_a_python_without_its_interpreter_lock_is_reported_in_one_sentence(
+def test_free_threaded_python_is_reported(
     enabled: object, refused: bool, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if enabled is None:

@@ -22,7 +22,7 @@ def different(suites: Any) -> Any:
     return suites.different
 
 
-def test_an_outcome_that_occurs_only_with_recording_counts_as_a_change(different) -> None:  # type: ignore[no-untyped-def]
+def test_outcome_only_with_recording_is_a_change(different) -> None:  # type: ignore[no-untyped-def]
     passed, failed = ["call passed"], ["call failed"]
     plain = {"a": passed, "b": passed, "c": failed}
     assert different([plain], plain) == []

@@ -22,7 +22,7 @@ def refused(folder: Path, *nodes: str) -> str:
 @pytest.mark.parametrize(
     "name", ["params.yaml", "params.yml", "robot.launch", "robot.launch.xml", "gains.json"]
 )
-def test_the_error_for_a_settings_file_among_the_nodes_explains_parameters(tmp_path: Path, name: str) -> None:
+def test_error_for_a_settings_file_explains_parameters(tmp_path: Path, name: str) -> None:
     (tmp_path / "node.py").write_text("import rospy\n")
     (tmp_path / name).write_text("gain: 2.0\n")
     found = refused(tmp_path, "node.py", name)

@@ -19,7 +19,7 @@ HEADING = Sensor("heading", topic="/pose", field="theta", bins=12, angle=True, u
 ACROSS = Conjunct(HEADING, *HEADING.interval(10, 13))  # the region: the last two bins and the first two
 
 
-def test_the_hull_of_cells_on_both_sides_takes_the_shorter_arc() -> None:
+def test_hull_of_cells_takes_the_shorter_arc() -> None:
     assert candidates._hull([(11,), (0,), (1,)], 0, HEADING) == (11, 13)
     assert candidates._hull([(3,), (5,)], 0, HEADING) == (3, 5)
     assert candidates._hull([(11,), (3,)], 0, HEADING) == (11, 15)
@@ -41,13 +41,13 @@ def test_a_cell_satisfies_the_condition_of_its_arc() -> None:
     assert [i for i in range(12) if holds(Guard((ACROSS,)), (i,), (HEADING,))] == [0, 1, 10, 11]
 
 
-def test_the_description_of_the_region_crosses_the_end_of_the_range() -> None:
+def test_region_description_crosses_the_range_end() -> None:
     vocabulary = Vocabulary((HEADING,), [(i,) for i in range(12)])
     assert vocabulary.words([(10,), (11,), (0,), (1,)]) == "heading above 2.1 or below -2.1 rad"
     assert vocabulary.words([(0,), (5,)]).startswith("heading -3.1 to -2.6 or ")
 
 
-def test_a_widened_arc_is_an_arc_or_the_whole_circle() -> None:
+def test_widened_arc_may_be_the_whole_circle() -> None:
     wider = candidates._wider(ACROSS)
     assert [i for i in range(12) if holds(Guard((wider,)), (i,), (HEADING,))] == [0, 1, 2, 3, 8, 9, 10, 11]
     whole = candidates._wider(wider)

@@ -50,9 +50,7 @@ def some(tank: pytest.Pytester, ending: str, pump: float, count: int = 6) -> lis
 
 
 @pytest.mark.parametrize("ending", [".bag", ".mcap", ".db3", ""])
-def test_missions_in_a_drifted_world_are_degraded_in_every_bag_format(
-    deployed: pytest.Pytester, ending: str
-) -> None:
+def test_drifted_missions_are_degraded_in_every_format(deployed: pytest.Pytester, ending: str) -> None:
     told = online(deployed, *some(deployed, ending, CLOGGED))
     told.assert_outcomes(failed=1, deselected=1)
     found = result(deployed)
@@ -63,7 +61,7 @@ def test_missions_in_a_drifted_world_are_degraded_in_every_bag_format(
     told.stdout.no_fnmatch_line("*--tarl-repair*")
 
 
-def test_nominal_missions_pass_even_if_there_is_only_one_mission(deployed: pytest.Pytester) -> None:
+def test_single_nominal_mission_passes(deployed: pytest.Pytester) -> None:
     online(deployed, *some(deployed, ".mcap", 1.0)).assert_outcomes(passed=1, deselected=1)
     assert result(deployed)["verdict"]["result"] == "no difference"
     online(deployed, deployed.path / "mission0.mcap").assert_outcomes(passed=1, deselected=1)
@@ -71,9 +69,7 @@ def test_nominal_missions_pass_even_if_there_is_only_one_mission(deployed: pytes
 
 
 @pytest.mark.parametrize(("ending", "share"), [(".bag", 0.6), (".mcap", 0.6), (".db3", 0.9)])
-def test_a_truncated_bag_is_used_up_to_the_damage_with_a_note(
-    deployed: pytest.Pytester, ending: str, share: float
-) -> None:
+def test_truncated_bag_is_used_with_a_note(deployed: pytest.Pytester, ending: str, share: float) -> None:
     (bag,) = some(deployed, ending, 1.0, 1)
     long = write_bag(deployed.path / f"long{ending}", mission(1.0, 7, steps=400))
     content = long.read_bytes()
@@ -85,7 +81,7 @@ def test_a_truncated_bag_is_used_up_to_the_damage_with_a_note(
     assert result(deployed)["episodes"]["online"] == 2
 
 
-def test_a_recording_without_its_metadata_is_read_from_its_files(deployed: pytest.Pytester) -> None:
+def test_recording_without_metadata_is_read(deployed: pytest.Pytester) -> None:
     folder = write_bag(deployed.path / "killed", mission(1.0, 0))
     (folder / "metadata.yaml").unlink()
     told = online(deployed, folder)
@@ -103,7 +99,7 @@ def test_an_unreadable_bag_is_skipped(deployed: pytest.Pytester) -> None:
     online(deployed, torn).stdout.fnmatch_lines(["*No bag can be compared with the recording. *torn.bag*"])
 
 
-def test_a_sensor_topic_that_is_missing_or_of_another_type_is_reported(deployed: pytest.Pytester) -> None:
+def test_wrong_sensor_topic_is_reported(deployed: pytest.Pytester) -> None:
     (bag,) = some(deployed, ".mcap", 1.0, 1)
     other = write_bag(deployed.path / "other.mcap", iter([(0.0, [("/depth", NUMBER, {"data": 1.0})])]))
     kind = "std_msgs/msg/Float32"
@@ -133,7 +129,7 @@ def test_subscribed_topics_may_be_missing_or_of_another_type(
     assert "/lamp was not replayed: the bag has std_msgs/msg/Bool there, the node subscribes to it as" in text
 
 
-def test_topics_of_the_node_are_not_replayed_but_available_to_the_monitor(
+def test_node_topics_are_kept_for_the_monitor(
     deployed: pytest.Pytester,
 ) -> None:
     changed(deployed, "test_tank", MONITOR, "    monitor=Watch,\n")
@@ -181,9 +177,7 @@ def test_bags_give_the_same_result_in_workers(deployed: pytest.Pytester) -> None
 @pytest.mark.parametrize(
     "flag", ["--tarl-repair", "--tarl-drift=clogged", "--tarl-episodes=5", "--tarl-ros=real"]
 )
-def test_options_that_run_the_world_cannot_be_combined_with_bags(
-    deployed: pytest.Pytester, flag: str
-) -> None:
+def test_world_options_conflict_with_bags(deployed: pytest.Pytester, flag: str) -> None:
     told = online(deployed, deployed.path / "m.bag", also=[flag])
     told.stderr.fnmatch_lines([f"*--tarl-bag*{flag.partition('=')[0]}*"])
 
@@ -197,9 +191,7 @@ def test_a_missing_or_invalid_bag_is_refused(deployed: pytest.Pytester) -> None:
 
 
 @pytest.mark.parametrize("absent", ["apsw", "sqlite3"])
-def test_a_damaged_database_is_noticed_with_every_version_of_rosbags(
-    monkeypatch: pytest.MonkeyPatch, absent: str
-) -> None:
+def test_damaged_database_is_noticed(monkeypatch: pytest.MonkeyPatch, absent: str) -> None:
     present = pytest.importorskip("sqlite3" if absent == "apsw" else "apsw")
     monkeypatch.setitem(sys.modules, absent, None)
     assert present.Error in reading._unreadable()

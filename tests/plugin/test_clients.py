@@ -96,7 +96,7 @@ SENDERS = {
 }
 
 
-def test_a_node_that_only_calls_a_service_is_recorded_and_compared(pytester: pytest.Pytester) -> None:
+def test_service_client_node_is_recorded_and_compared(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(valve=VALVE, test_tank=TANK)
     result = pytester.runpytest(*RECORD)
     result.assert_outcomes(passed=1)
@@ -105,7 +105,7 @@ def test_a_node_that_only_calls_a_service_is_recorded_and_compared(pytester: pyt
     result.stdout.fnmatch_lines(["*valve.py:7  valve(message.data > 3.0)*"])
 
 
-def test_a_service_that_the_test_does_not_serve_is_not_an_output(pytester: pytest.Pytester) -> None:
+def test_unserved_service_is_no_output(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(
         valve=VALVE.replace('    valve(', '    from contextlib import suppress\n    with suppress(Exception): valve('),
         test_tank=TANK.replace("    tarl.bus.serve", "    drawn.append(False)\n    lambda: tarl.bus.serve"),

@@ -88,7 +88,7 @@ def options(**given: Any) -> Any:
     return SimpleNamespace(**{**usual, **given})
 
 
-def test_deployed_episodes_come_from_the_world_with_seeds_of_their_own() -> None:
+def test_deployed_episodes_have_their_own_seeds() -> None:
     def side(stage: Any = None, **given: Any) -> Any:
         none: Any = None
         return _side(none, none, none, options(**given), none, stage)
@@ -142,7 +142,7 @@ def watched(monkeypatch: pytest.MonkeyPatch, sure: set[int]) -> tuple[_Watch, li
     return _Watch(offline, marked, given, (Look(2, 0.25), Look(4, 0.75)), 999), asked
 
 
-def test_verdicts_are_computed_at_the_planned_checks_until_one_verdict_is_certain(
+def test_verdicts_are_checked_until_certain(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     watch, asked = watched(monkeypatch, {4})

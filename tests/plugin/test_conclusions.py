@@ -63,7 +63,7 @@ def test_the_patch_is_also_a_junit_property(drifting: pytest.Pytester) -> None:
     assert (drifting.path / found["tarl_patch"]).is_file()
 
 
-def test_github_gets_an_annotation_at_the_line_of_the_culprit(
+def test_github_annotation_is_at_the_culprit(
     drifting: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told = drifting.runpytest(*ONLINE)
@@ -92,7 +92,7 @@ def test_only_several_drifts_are_shown_in_a_table(drifting: pytest.Pytester) -> 
     drifting.runpytest(*ONLINE, "--tarl-drift=fine").stdout.no_fnmatch_line("*side by side*")
 
 
-def test_the_lost_part_of_the_reward_is_shown_with_its_region(drifting: pytest.Pytester) -> None:
+def test_lost_reward_part_has_its_region(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE, "--tarl-drift=clogged")
     told.stdout.fnmatch_lines(["  parts    level -* where level *"])
     told.stdout.no_fnmatch_line("*time -*")
@@ -100,7 +100,7 @@ def test_the_lost_part_of_the_reward_is_shown_with_its_region(drifting: pytest.P
     assert "Lost where" in page.read_text("utf-8")
 
 
-def test_verdicts_are_corrected_by_holm_after_all_tests_have_run(drifting: pytest.Pytester) -> None:
+def test_holm_corrects_after_all_tests(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE, "--tarl-holm", "-v")
     told.assert_outcomes(failed=1, passed=1, deselected=1)
     told.stdout.fnmatch_lines(["*clogged?*FAILED*", "*fine?*PASSED*", "*corrected for the 2 comparisons*"])
@@ -113,7 +113,7 @@ def test_verdicts_are_corrected_by_holm_after_all_tests_have_run(drifting: pytes
     assert corrected["p_loss"] == pytest.approx(2 * alone["p_loss"])
 
 
-def test_a_loss_that_is_significant_alone_may_not_be_after_correction(drifting: pytest.Pytester) -> None:
+def test_single_significance_may_vanish_after_correction(drifting: pytest.Pytester) -> None:
     many = ", ".join(f'"fine{n}": 1.0' for n in range(9))
     changed(drifting, "test_tank", '"fine": 1.0', many)
     short = (
@@ -140,9 +140,7 @@ def test_many_comparisons_get_as_many_permutations_as_holm_needs(drifting: pytes
     ("other", "said"),
     [("--tarl-repair", "--tarl-repair need separate runs"), ("-n2", "with -n no process sees them all")],
 )
-def test_a_run_that_cannot_be_corrected_is_refused_with_the_reason(
-    drifting: pytest.Pytester, other: str, said: str
-) -> None:
+def test_uncorrectable_run_is_refused(drifting: pytest.Pytester, other: str, said: str) -> None:
     told = drifting.runpytest("--tarl-online", "--tarl-holm", other)
     told.stderr.fnmatch_lines([f"*--tarl-holm*{said}*"])
     assert told.ret == pytest.ExitCode.USAGE_ERROR

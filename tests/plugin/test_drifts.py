@@ -63,7 +63,7 @@ def test_a_range_needs_two_numbers(ends: tuple[Any, Any]) -> None:
         Drift.range(*ends)
 
 
-def test_either_all_parts_of_a_scenario_are_permanent_or_none_is() -> None:
+def test_scenario_parts_are_all_permanent_or_none() -> None:
     lasting = Drift(0.8, permanent=True)
     assert drift("t", "worn", {"left": lasting, "right": lasting}).permanent
     assert drift("t", "worn", Drift({"left": 0.8, "right": 0.7}, permanent=True)).permanent
@@ -85,7 +85,7 @@ def _drifts(**values: Any) -> dict[str, Drift]:
     return {name: drift("t", name, one) for name, one in values.items()}
 
 
-def test_the_recorded_design_is_the_base_and_a_scenario_changes_it() -> None:
+def test_scenario_changes_the_recorded_design() -> None:
     drifts = _drifts(worn=Drift({"wheel": 0.8}, permanent=True), mud={"slip": 0.15}, dusk=0.3)
     assert value(drifts, (), None, 1) is None
     assert value(drifts, ("worn",), None, 1) == {"wheel": 0.8}
@@ -95,7 +95,7 @@ def test_the_recorded_design_is_the_base_and_a_scenario_changes_it() -> None:
     assert value(drifts, ("worn",), AS_WRITTEN, 1) is None
 
 
-def test_recording_adds_to_the_design_or_returns_to_the_original_world() -> None:
+def test_recording_adds_to_the_design_or_resets_it() -> None:
     drifts = _drifts(worn={"wheel": 0.8}, moved={"camera": 0.1}, dusk=0.3)
     assert adopting((), None, drifts) == ()
     assert adopting(("worn",), None, drifts) == ("worn",)
@@ -105,7 +105,7 @@ def test_recording_adds_to_the_design_or_returns_to_the_original_world() -> None
     assert adopting(("worn", "moved"), AS_WRITTEN, drifts) == ()
 
 
-def test_a_design_that_the_marker_no_longer_declares_is_refused() -> None:
+def test_undeclared_design_is_refused() -> None:
     with pytest.raises(
         SettingsError, match="'worn' as part of the design, but the marker no longer declares it"
     ):
@@ -113,7 +113,7 @@ def test_a_design_that_the_marker_no_longer_declares_is_refused() -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 no zip", b"text"])
-def test_a_file_that_is_not_a_recording_gives_no_design(tmp_path: Path, content: bytes) -> None:
+def test_foreign_file_gives_no_design(tmp_path: Path, content: bytes) -> None:
     assert adopted(tmp_path / "missing.npz") == ()
     (tmp_path / "broken.npz").write_bytes(content)
     assert adopted(tmp_path / "broken.npz") == ()

@@ -58,7 +58,7 @@ FAULTS = Faults({"bias": Refusing()})  # type: ignore[dict-item]
 ACTIVE = Faults({"bias": Refusing()}, {"bias": (Refusing(), 1.0)})  # type: ignore[dict-item]
 
 
-def test_an_episode_with_a_reward_and_a_node_that_publishes_is_usable() -> None:
+def test_rewarded_publishing_episode_is_usable() -> None:
     assert ended().problem() is None
     assert ended().notes() == ()
 
@@ -74,7 +74,7 @@ def test_an_episode_with_a_reward_and_a_node_that_publishes_is_usable() -> None:
         ({"faults": FAULTS, "ros": SILENT}, "the fault 'bias'"),
     ],
 )
-def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[str, Any], words: str) -> None:
+def test_first_reason_of_an_unusable_episode_is_reported(changed: dict[str, Any], words: str) -> None:
     assert re.search(words, problem(**changed))
 
 
@@ -88,9 +88,7 @@ def test_the_first_reason_why_an_episode_is_unusable_is_reported(changed: dict[s
         ({"situation": UNKNOWN, "changed": True, "ros": SILENT}, "Sensor 'x'"),
     ],
 )
-def test_a_silent_sensor_or_node_is_reported_but_the_episode_is_usable(
-    changed: dict[str, Any], words: str
-) -> None:
+def test_silent_sensor_is_reported(changed: dict[str, Any], words: str) -> None:
     assert problem(**changed) == ""
     assert re.search(words, ended(**changed).silence())
 
@@ -136,7 +134,7 @@ def test_silenced_node_is_noted_unless_a_fault_is_declared() -> None:
     assert ended(drifted=True, ros=SILENT, drives_ros=False).notes() == ()
 
 
-def test_notes_come_in_the_order_of_shutdown_recording_start_and_replay() -> None:
+def test_notes_have_a_fixed_order() -> None:
     ros: Any = SimpleNamespace(
         silent=True,
         subscribed=(),

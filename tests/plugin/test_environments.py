@@ -73,7 +73,7 @@ def reference(tank: pytest.Pytester) -> bytes:
 
 
 @pytest.mark.parametrize("seed", range(TIMES))
-def test_a_recording_does_not_depend_on_python_options_environment_variables_and_umask(
+def test_recording_does_not_depend_on_the_environment(
     tank: pytest.Pytester, reference: bytes, seed: int
 ) -> None:
     flags, options, variables, umask = drawn(seed)
@@ -85,9 +85,7 @@ def test_a_recording_does_not_depend_on_python_options_environment_variables_and
     assert fixture_file(tank).read_bytes() == reference, shown
 
 
-def test_simultaneous_runs_in_one_folder_write_the_recording_of_a_single_run(
-    tank: pytest.Pytester, reference: bytes
-) -> None:
+def test_simultaneous_runs_write_one_recording(tank: pytest.Pytester, reference: bytes) -> None:
     runs = [started(tank.path, [], [], os.environ) for _ in range(3)]
     outputs = [run.communicate()[0] for run in runs]
     assert [run.returncode for run in runs] == [0, 0, 0], outputs

@@ -33,7 +33,7 @@ def episode(folder: Path, seed: int = 7) -> Iterator[tuple[Tarl, Recorder]]:
         tarl.close()
 
 
-def test_a_random_stream_depends_on_its_name_and_not_on_earlier_draws(tmp_path):
+def test_random_stream_depends_only_on_its_name(tmp_path):
     with episode(tmp_path) as (tarl, _):
         first = tarl.rng("wind").random(4).tolist()
         tarl.rng("noise").random(100)
@@ -112,7 +112,7 @@ MISTAKES: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_of_the_test_is_reported_in_one_sentence(tmp_path, mistake):
+def test_test_mistake_is_reported_in_one_sentence(tmp_path, mistake):
     call, words = MISTAKES[mistake]
     with episode(tmp_path) as (tarl, recorder):
         with pytest.raises(SettingsError, match=words):

@@ -20,7 +20,7 @@ def test_many_or_equal_episodes_give_no_note() -> None:
     assert not detectable(np.full(20, 0.1))
 
 
-def test_the_note_says_that_up_to_three_episodes_show_nothing() -> None:
+def test_note_says_that_three_episodes_show_nothing() -> None:
     shown = "episodes are too few: a comparison with so few episodes cannot show any loss. Record at least 4."
     assert detectable(np.array([1.0, 2.0])) == [f"2 {shown}"]
     assert detectable(np.ones(3)) == [f"3 {shown}"]

@@ -70,14 +70,14 @@ def logged(one: FinishedTest) -> Any:
     return reports[1]
 
 
-def test_an_account_is_attached_with_its_properties_to_both_reports(item: Any) -> None:
+def test_account_is_attached_to_both_reports(item: Any) -> None:
     one = finished(item, lambda: Account(("line",), properties=(("tarl_verdict", "drifted"),)))
     found = logged(one)
     assert (found.outcome, getattr(found, ACCOUNT)["lines"]) == ("passed", ["line"])
     assert found.user_properties == one.teardown.user_properties == [("tarl_verdict", "drifted")]
 
 
-def test_a_problem_fails_the_test_with_its_sentence_made_printable(item: Any) -> None:
+def test_problem_fails_the_test_in_print(item: Any) -> None:
     found = logged(finished(item, lambda: Account((), problem="degraded\x1b[1m")))
     assert (found.outcome, found.longrepr) == ("failed", "degraded\\x1b[1m")
 
@@ -101,9 +101,7 @@ def test_a_test_without_a_recording_is_skipped_and_counted(item: Any) -> None:
     assert not hasattr(other, ACCOUNT)
 
 
-def test_a_further_stage_replaces_the_result_and_adds_its_duration(
-    item: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_further_stage_replaces_the_result(item: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     again = report("failed")
     monkeypatch.setattr(finished_tests, "finish", lambda *_: again)
     one = finished(item, lambda: "first")
@@ -129,7 +127,7 @@ def test_a_conclusion_keeps_the_times_of_the_test(item: Any) -> None:
     assert (one.call.start, one.call.stop, one.call.duration) == (1.0, 4.0, 3.0)
 
 
-def test_a_test_that_starts_and_a_phase_without_failure_are_reported(item: Any) -> None:
+def test_started_and_passed_phases_are_reported(item: Any) -> None:
     started(item)
     assert item.ihook.calls == [
         ("pytest_runtest_logstart", {"nodeid": item.nodeid, "location": item.location})

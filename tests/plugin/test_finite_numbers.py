@@ -32,7 +32,7 @@ def test_finite_numbers_of_any_type_are_accepted(value: Any) -> None:
 
 
 @pytest.mark.parametrize("value", OTHERS, ids=repr)
-def test_values_that_are_not_finite_numbers_are_reported_in_one_sentence(value: Any) -> None:
+def test_non_finite_values_are_reported_in_one_sentence(value: Any) -> None:
     assert finite_number(value) is None
     for give in (
         lambda: Drift.range(value, 5.0),

@@ -49,9 +49,7 @@ def helped(tank: pytest.Pytester, module: str) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = flow_of(missing)")
 
 
-def test_a_package_that_wraps_rospy_is_instrumented_in_every_episode(
-    tank: pytest.Pytester, installed: Path
-) -> None:
+def test_rospy_wrapper_package_is_instrumented(tank: pytest.Pytester, installed: Path) -> None:
     (installed / "counted_ros.py").write_text(WRAPPER)
     (installed / "counted_facade.py").write_text("from counted_ros import COUNTED\n")
     changed(tank, "keeper", "import rospy\n", "import rospy\nfrom counted_facade import COUNTED\n")
@@ -96,7 +94,7 @@ def test_constant_of_a_helper_outside_rootdir_is_changed(
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_named_helper_in_a_folder_without_init_is_reported(tank: pytest.Pytester) -> None:
+def test_helper_without_an_init_file_is_reported(tank: pytest.Pytester) -> None:
     helped(tank, "helpers.gains")
     (tank.path / "helpers").mkdir()
     (tank.path / "helpers" / "gains.py").write_text(GAINS)
@@ -122,7 +120,7 @@ def test_a_named_file_of_constants_is_not_reported(tank: pytest.Pytester) -> Non
     assert "settings.py is named in nodes" not in told
 
 
-def test_an_episode_that_ran_an_older_text_is_an_error() -> None:
+def test_episode_of_older_text_is_an_error() -> None:
     ended = EpisodeRun(EpisodePlan(1), Recorder().finish(), passed=True, older=(Path("gains.py"),))
     with pytest.raises(StaleTextError, match=r"gains\.py: the candidate was written into the file"):
         _outcome(lambda: ended, -1.0)

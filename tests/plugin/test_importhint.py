@@ -26,7 +26,7 @@ def test_a_failed_import_of_ros_comes_with_a_hint(tank: pytest.Pytester, line: s
 
 
 @pytest.mark.parametrize("line", ["import colour_of_magic", "1 / 0", "raise ImportError('no')"])
-def test_import_errors_that_do_not_involve_ros_get_no_hint(tank: pytest.Pytester, line: str) -> None:
+def test_foreign_import_errors_get_no_hint(tank: pytest.Pytester, line: str) -> None:
     tank.makepyfile(test_top=f"{line}\n")
     told = tank.runpytest("test_top.py")
     told.assert_outcomes(errors=1)

@@ -44,9 +44,7 @@ def test_the_command_line_overrides_the_ini_file(pytester: pytest.Pytester) -> N
 
 
 @pytest.mark.parametrize(("text", "said"), [("true", True), ("Yes", True), ("off", False), ("0", False)])
-def test_an_ini_switch_accepts_every_spelling_of_true_and_false(
-    pytester: pytest.Pytester, text: str, *, said: bool
-) -> None:
+def test_ini_switch_accepts_every_spelling(pytester: pytest.Pytester, text: str, *, said: bool) -> None:
     assert read(pytester, f"tarl_constants = {text}", "--tarl-online")["constants"] is said
 
 
@@ -71,9 +69,7 @@ def test_ini_options_of_another_mode_are_ignored(pytester: pytest.Pytester) -> N
 @pytest.mark.parametrize(
     ("lines", "asked"), [("tarl_online = true", True), ("tarl_drift = mud", False), ("", False)]
 )
-def test_only_an_ini_option_that_sets_a_mode_activates_the_plugin(
-    pytester: pytest.Pytester, lines: str, *, asked: bool
-) -> None:
+def test_only_a_mode_activates_the_plugin(pytester: pytest.Pytester, lines: str, *, asked: bool) -> None:
     assert ini.mode_asked(configured(pytester, lines)) is asked
     ended = pytester.runpytest("-q", "-p", "no:asyncio")
     assert ("1 deselected" if asked else "1 passed") in ended.stdout.str()
@@ -103,7 +99,7 @@ def test_an_invalid_value_is_reported_in_one_sentence(
     assert "Traceback" not in ended.stderr.str()
 
 
-def test_a_run_without_a_mode_uses_the_seed_of_the_ini_file(pytester: pytest.Pytester) -> None:
+def test_run_without_a_mode_uses_the_ini_seed(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(test_it=MARKED, node="")
     drawn = []
     for lines, flags in [("", ()), ("tarl_seed = 5", ()), ("", ("--tarl-seed=5",))]:

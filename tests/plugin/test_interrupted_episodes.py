@@ -25,7 +25,7 @@ def default() -> Iterator[Any]:
     signal.signal(signal.SIGINT, before)
 
 
-def test_an_interrupt_that_a_node_catches_still_ends_the_run(default: Any) -> None:
+def test_caught_interrupt_still_ends_the_run(default: Any) -> None:
     after = []
 
     def episode() -> None:
@@ -46,7 +46,7 @@ def test_without_an_interrupt_the_handler_is_restored(default: Any) -> None:
     assert signal.getsignal(signal.SIGINT) is default
 
 
-def test_the_handler_stays_if_interrupts_are_ignored_or_in_another_thread(default: Any) -> None:
+def test_handler_stays_if_interrupts_are_ignored(default: Any) -> None:
     def inside() -> None:
         with _heeding_interrupts():
             found.append(signal.getsignal(signal.SIGINT))
@@ -61,7 +61,7 @@ def test_the_handler_stays_if_interrupts_are_ignored_or_in_another_thread(defaul
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
 
-def test_the_limit_of_an_item_applies_to_each_of_its_episodes() -> None:
+def test_item_limit_applies_to_each_episode() -> None:
     told: list[tuple[str, Any]] = []
     hook = SimpleNamespace(
         pytest_timeout_set_timer=lambda item, settings: told.append(("set", settings)),

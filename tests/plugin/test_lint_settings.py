@@ -86,7 +86,7 @@ def test_a_node_that_only_looks_up_transforms_is_recorded(follower: pytest.Pytes
     result.stdout.fnmatch_lines(["*recorded ATR*"])
 
 
-def test_look_ups_are_not_sources_if_the_setting_tf2_is_false(follower: pytest.Pytester) -> None:
+def test_tf2_setting_makes_look_ups_sources(follower: pytest.Pytester) -> None:
     follower.makepyprojecttoml("[tool.tarl-lint]\ntf2 = false\n")
     result = follower.runpytest(*RECORD)
     result.assert_outcomes(failed=1)

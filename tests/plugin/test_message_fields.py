@@ -35,7 +35,7 @@ def test_a_field_indexes_arrays_of_any_kind() -> None:
         ("rows[i]", "rows[i]"),
     ],
 )
-def test_an_index_in_brackets_becomes_a_part_of_the_path(field: str, path: str) -> None:
+def test_bracketed_index_becomes_a_path_part(field: str, path: str) -> None:
     assert dotted(field) == path
 
 

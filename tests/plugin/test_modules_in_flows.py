@@ -49,9 +49,7 @@ def project(root: Path, files: dict[str, str], *sites: Any) -> Any:
         ("def f():\n    import gains\n", "x = gains.KP", "src/gains.py"),
     ],
 )
-def test_a_name_leads_to_the_file_that_it_is_imported_from(
-    tmp_path: Path, text: str, code: str, file: str | None
-) -> None:
+def test_name_leads_to_its_imported_file(tmp_path: Path, text: str, code: str, file: str | None) -> None:
     files = {"src/node.py": text, "src/gains.py": "KP = 1\n", "shared.py": "", "robot/limits.py": "TOP = 1\n"}
     found = project(tmp_path, files, step("src/node.py", 4, "y = 1"), step("src/node.py", 7, code))
     expected = [] if file is None else [Use(tmp_path.resolve() / file, "src/node.py", 7)]
@@ -82,7 +80,7 @@ def silent(root: Path, names: list[str], found: Any) -> list[str]:
     return list(silent_files([root / name for name in names], found, root, passed_with_imports))
 
 
-def test_files_without_a_statement_or_a_used_name_are_named(tmp_path: Path) -> None:
+def test_files_without_a_used_name_are_named(tmp_path: Path) -> None:
     files = {"node.py": "import gains\n", "gains.py": "KP = 1\n", "spare.py": "", "params.yaml": ""}
     found = project(tmp_path, files, step("node.py", 2, "x = gains.KP"))
     (told,) = silent(tmp_path, [*files], found)
@@ -90,7 +88,7 @@ def test_files_without_a_statement_or_a_used_name_are_named(tmp_path: Path) -> N
     assert told.endswith("remove it from nodes, or run `tarl-lint` to see the flows")
 
 
-def test_a_package_without_an_init_file_is_named_as_the_reason(tmp_path: Path) -> None:
+def test_missing_init_file_is_the_reason(tmp_path: Path) -> None:
     for text in ("from robot.limits import TOP\n", "import robot.limits\n", "from robot import limits\n"):
         files = {"node.py": text, "robot/limits.py": "TOP = 1\n"}
         found = project(tmp_path, files, step("node.py", 2, "x = 1"))
@@ -107,7 +105,7 @@ def test_a_package_without_an_init_file_is_named_as_the_reason(tmp_path: Path) -
     assert told.endswith("to see the flows")
 
 
-def test_a_file_outside_the_root_is_named_by_its_whole_path(tmp_path: Path) -> None:
+def test_file_outside_the_root_is_named_by_path(tmp_path: Path) -> None:
     root = tmp_path / "project"
     found = project(root, {"node.py": ""}, step("node.py", 2, "x = 1"))
     (tmp_path / "far.py").write_text("")

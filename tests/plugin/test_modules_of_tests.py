@@ -84,7 +84,7 @@ def test_a_file_that_cannot_be_parsed_is_ignored(project: Path) -> None:
     assert told(project, "world.py", "class World:", "class World") == ["world.py is gone"]
 
 
-def test_recordings_of_older_versions_have_no_data_on_the_test(project: Path) -> None:
+def test_older_recordings_have_no_test_data(project: Path) -> None:
     assert list(changes({}, digests("test_it.py::test_it", project, []))) == []
 
 

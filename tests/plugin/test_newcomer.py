@@ -58,7 +58,7 @@ def test_all_modes_work_without_the_terminal_plugin_of_pytest(tank: pytest.Pytes
     assert list((tank.path / ".tarl" / "patches").glob("*.patch"))
 
 
-def test_a_missing_marker_is_reported_in_one_sentence_without_a_traceback(tank: pytest.Pytester) -> None:
+def test_missing_marker_is_reported_in_one_sentence(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_bare="def test_bare(tarl):\n    pass\n")
     told = tank.runpytest("test_bare.py")
     told.assert_outcomes(errors=1)
@@ -67,7 +67,7 @@ def test_a_missing_marker_is_reported_in_one_sentence_without_a_traceback(tank: 
 
 
 @pytest.mark.parametrize("flag", ["--tarl-rekord", "--tarl-onlin=1"])
-def test_the_error_about_a_misspelt_flag_suggests_the_closest_flag(tank: pytest.Pytester, flag: str) -> None:
+def test_misspelt_flag_suggests_the_closest(tank: pytest.Pytester, flag: str) -> None:
     told = tank.runpytest(flag)
     assert told.ret == pytest.ExitCode.USAGE_ERROR
     meant = "--tarl-record" if "rek" in flag else "--tarl-online"
@@ -82,9 +82,7 @@ def test_a_flag_defined_in_conftest_is_accepted(tank: pytest.Pytester) -> None:
 
 
 @pytest.mark.parametrize("mode", [RECORD, ONLINE])
-def test_a_run_without_marked_tests_says_that_nothing_was_run(
-    tank: pytest.Pytester, mode: tuple[str, ...]
-) -> None:
+def test_run_without_marked_tests_says_so(tank: pytest.Pytester, mode: tuple[str, ...]) -> None:
     tank.makepyfile(test_plain="def test_plain():\n    pass\n")
     told = tank.runpytest(*mode, "test_plain.py")
     told.assert_outcomes(deselected=1)
@@ -120,7 +118,7 @@ def test_file_of_another_kind_is_not_to_be_trusted(
     told.stdout.no_fnmatch_line("*pickle*")
 
 
-def test_no_second_full_stop_is_added_to_a_failure_message(tank: pytest.Pytester) -> None:
+def test_failure_message_gets_no_second_full_stop(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Fix the node*"])
 
@@ -148,7 +146,7 @@ def test_interrupt_keeps_the_old_recording(
     tank.runpytest_subprocess(*RECORD).stdout.fnmatch_lines(["Interrupted *: no recording was written.*"])
 
 
-def test_a_callback_that_is_the_publish_call_itself_counts_as_driven(
+def test_direct_publish_callback_counts_as_driven(
     tank: pytest.Pytester,
 ) -> None:
     copy = 'rospy.Subscriber("/level", Float64, rospy.Publisher("/copy", Float64, queue_size=1).publish)'
@@ -160,7 +158,7 @@ def test_a_callback_that_is_the_publish_call_itself_counts_as_driven(
     told.stdout.no_fnmatch_line("*was executed*")
 
 
-def test_a_node_that_the_test_does_not_drive_is_reported(tank: pytest.Pytester) -> None:
+def test_undriven_node_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile(idle=(tank.path / "keeper.py").read_text())
     changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["idle.py"]')
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*no step of /level → /valve was executed*"])
@@ -177,7 +175,7 @@ LAUNCHED = """
     """
 
 
-def test_a_failed_test_names_the_nodes_that_could_not_be_launched(tank: pytest.Pytester) -> None:
+def test_failed_test_names_unlaunched_nodes(tank: pytest.Pytester) -> None:
     nodes = '<node pkg="tank" type="keeper.py" name="keeper"/><node pkg="sick" type="driver" name="laser"/>'
     (tank.path / "package.xml").write_text("<package><name>tank</name></package>")
     (tank.path / "tank.launch").write_text(f"<launch>{nodes}</launch>")

@@ -78,7 +78,7 @@ def test_an_invalid_marker_is_reported_in_one_sentence(change: dict[str, Any], w
         ("tolerance", 0, 1e300, (-1e-300, float("inf"))),
     ],
 )
-def test_numbers_of_a_marker_may_be_equal_to_their_limits(
+def test_marker_numbers_may_equal_their_limits(
     name: str, least: float, most: float, beyond: tuple[float, float]
 ) -> None:
     for value in (least, most):
@@ -89,7 +89,7 @@ def test_numbers_of_a_marker_may_be_equal_to_their_limits(
 
 
 @pytest.mark.parametrize(("value", "accepted"), [(0.5, True), (1 - 1e-9, True), (0.499, False), (1.0, False)])
-def test_a_confidence_is_at_least_one_half_and_less_than_one(value: float, accepted: bool) -> None:
+def test_confidence_is_between_one_half_and_one(value: float, accepted: bool) -> None:
     arguments = GOOD | {"confidence": value, "min_success": 0.9}
     if accepted:
         assert designation("here", (), arguments).confidence == value
@@ -140,7 +140,7 @@ def test_invalid_flags_are_reported_in_one_sentence(change: dict[str, Any], word
         ({}, "workers", "1", "1024", ("0", "1025")),
     ],
 )
-def test_numbers_of_a_flag_may_be_equal_to_their_limits(
+def test_flag_numbers_may_equal_their_limits(
     given: dict[str, Any], name: str, least: Any, most: Any, beyond: tuple[Any, Any]
 ) -> None:
     for value in (least, most):
@@ -159,7 +159,7 @@ def test_values_out_of_range_are_refused_in_one_sentence(name: str, value: objec
         designation("here", (), arguments)
 
 
-def test_workers_are_a_number_or_the_share_of_cores_that_xdist_leaves(
+def test_workers_are_a_number_or_a_share_of_cores(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert options(FLAGS | {"workers": "3"}).workers == 3

@@ -114,7 +114,7 @@ def test_a_coroutine_test_is_run_for_every_episode(tank: pytest.Pytester, expect
 
 
 @needs("anyio")
-def test_a_coroutine_test_for_anyio_is_run_for_every_episode(tank: pytest.Pytester) -> None:
+def test_anyio_coroutine_runs_in_every_episode(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", MARK, f"@pytest.mark.anyio\n{MARK}")
     changed(tank, "test_tank", "def test_fills", "async def test_fills")
     tank.makeconftest("import pytest\n\n@pytest.fixture\ndef anyio_backend():\n    return 'asyncio'\n")
@@ -162,7 +162,7 @@ def test_a_timeout_applies_to_each_episode(tank: pytest.Pytester, func_only: boo
 
 
 @needs("pytest_timeout")
-def test_an_episode_that_times_out_ends_the_recording_and_is_named(tank: pytest.Pytester) -> None:
+def test_timed_out_episode_ends_the_recording(tank: pytest.Pytester) -> None:
     changed(
         tank, "test_tank", "    draws = tarl.rng", "    import time\n    time.sleep(60)\n    draws = tarl.rng"
     )
@@ -181,7 +181,7 @@ def covered(tank: pytest.Pytester, *flags: str) -> object:
 
 
 @needs("pytest_cov")
-def test_coverage_of_lines_and_branches_is_the_same_as_without_recording(tank: pytest.Pytester) -> None:
+def test_coverage_is_the_same_without_recording(tank: pytest.Pytester) -> None:
     plain = covered(tank)
     assert covered(tank, *FEW) == plain
 

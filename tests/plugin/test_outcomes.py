@@ -72,7 +72,7 @@ def test_raising_node_crashed_and_waiting_free_node_is_stuck() -> None:
     assert (run.passed, run.stuck) == (False, True)
 
 
-def test_a_failure_in_setup_or_teardown_is_outside_the_mission() -> None:
+def test_setup_failure_is_outside_the_mission() -> None:
     error = AssertionError("too far")
     run = ran(report("setup", "failed", "no fixture"), error=error)
     assert (run.passed, run.broken) == (False, "no fixture")
@@ -82,7 +82,7 @@ def test_a_failure_in_setup_or_teardown_is_outside_the_mission() -> None:
     assert (run.passed, run.failure, run.broken) == (False, "", "leak")
 
 
-def test_an_error_of_the_settings_or_an_unusable_episode_is_raised() -> None:
+def test_settings_error_is_raised() -> None:
     with pytest.raises(SettingsError, match="wrong"):
         ran(FAILED, error=SettingsError("wrong"))
     problem = RecordingError("no reward")

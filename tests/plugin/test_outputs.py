@@ -19,7 +19,7 @@ def sums(*messages: tuple[str, float]) -> dict[str, tuple[float, float, float]]:
     return found.sums
 
 
-def test_the_checksum_of_outputs_depends_on_values_and_topics_and_order() -> None:
+def test_output_checksum_depends_on_values_and_order() -> None:
     assert sums(("/a", 2.0), ("/b", 3.0), ("/a", 1.0)) == {"/a": (3.0, 5.0, 2.0), "/b": (3.0, 6.0, 3.0)}
     assert sums(("/a", 1.0), ("/b", 3.0), ("/a", 2.0)) != sums(("/a", 2.0), ("/b", 3.0), ("/a", 1.0))
     assert sums() == {}

@@ -50,22 +50,20 @@ def sent(folder: Path, program: str, **options: object) -> float:
 
 
 @pytest.mark.parametrize(("program", "text"), [(ROS1, FLAT), (ROS2, FLAT), (ROS2, BY_NODE)])
-def test_a_node_gets_the_parameters_of_a_file_beside_the_test(
-    tmp_path: Path, program: str, text: str
-) -> None:
+def test_node_gets_parameters_beside_the_test(tmp_path: Path, program: str, text: str) -> None:
     (tmp_path / "config.yaml").write_text(text, "utf-8")
     assert sent(tmp_path, program, parameters="../config.yaml") == 1.5
     assert sent(tmp_path, program, parameters=tmp_path / "config.yaml") == 1.5
 
 
-def test_a_mapping_is_returned_unchanged_and_nothing_gives_an_empty_mapping(tmp_path: Path) -> None:
+def test_mapping_is_returned_unchanged(tmp_path: Path) -> None:
     values = {"gain": 2.0}
     assert parameters_of(values, tmp_path, "tarl.start") is values
     assert parameters_of(None, tmp_path, "tarl.start") == {}
 
 
 @pytest.mark.parametrize("given", [["gain", 2.0], 3.0, b"config.yaml"])
-def test_other_types_are_refused_with_the_name_of_the_function(tmp_path: Path, given: object) -> None:
+def test_other_types_name_the_function(tmp_path: Path, given: object) -> None:
     with pytest.raises(
         SettingsError, match=r"tarl\.launch: parameters takes a mapping or the path of a YAML"
     ):
@@ -85,16 +83,14 @@ def test_other_types_are_refused_with_the_name_of_the_function(tmp_path: Path, g
         (b"a: !!python/object/apply:os.getcwd []\n", "is not valid YAML"),
     ],
 )
-def test_a_file_that_cannot_be_used_is_described_in_one_sentence(
-    tmp_path: Path, content: bytes, message: str
-) -> None:
+def test_unusable_file_is_described_in_one_sentence(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "config.yaml").write_bytes(content)
     with pytest.raises(SettingsError, match=message) as caught:
         parameters_of("config.yaml", tmp_path, "tarl.start")
     assert "\n" not in str(caught.value)
 
 
-def test_the_error_for_a_missing_file_names_it_and_its_base_folder(tmp_path: Path) -> None:
+def test_missing_file_error_names_its_folder(tmp_path: Path) -> None:
     with pytest.raises(
         SettingsError, match=r"no parameter file .*nowhere\.yaml.*relative to the test's folder"
     ):

@@ -48,7 +48,7 @@ def test_recording_writes_a_file_and_deselects_unmarked_tests(tank: pytest.Pytes
     assert (tank.path / ".tarl" / ".gitignore").read_text().count("!utility/") == 2
 
 
-def test_equal_seeds_give_equal_bytes_and_different_seeds_do_not(tank: pytest.Pytester) -> None:
+def test_equal_seeds_give_equal_bytes(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     first = fixture_file(tank).read_bytes()
     result = tank.runpytest(*RECORD)
@@ -58,7 +58,7 @@ def test_equal_seeds_give_equal_bytes_and_different_seeds_do_not(tank: pytest.Py
     assert fixture_file(tank).read_bytes() != first
 
 
-def test_a_drift_with_a_loss_is_degraded_and_fails_the_test(recorded: pytest.Pytester) -> None:
+def test_lossy_drift_is_degraded(recorded: pytest.Pytester) -> None:
     result = recorded.runpytest(*ONLINE)
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*test_fills?clogged?*degraded*", "*keeper.py:*"])
@@ -78,14 +78,14 @@ def test_a_drift_without_an_effect_passes(tank: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*test_fills?clean?: no difference*"])
 
 
-def test_the_scenario_is_called_online_if_no_drift_is_named(tank: pytest.Pytester) -> None:
+def test_unnamed_drift_is_called_online(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", '    drifts={"clogged": 0.25},\n', "")
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE, "-v").stdout.fnmatch_lines(["*test_fills?online?*PASSED*"])
 
 
 @pytest.mark.parametrize("search", ["sweep", pytest.param("epsilon-greedy", marks=slow)])
-def test_a_repair_is_found_and_applying_it_fixes_the_test(recorded: pytest.Pytester, search: str) -> None:
+def test_applied_repair_fixes_the_test(recorded: pytest.Pytester, search: str) -> None:
     result = recorded.runpytest(*ONLINE, "--tarl-repair", f"--tarl-search={search}")
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*git apply .tarl/patches/*.patch*"])
@@ -109,7 +109,7 @@ def test_a_drift_that_no_constant_repairs_gives_no_patch(tank: pytest.Pytester) 
     assert found["repair"]["accepted"] is False
 
 
-def test_a_missing_recording_skips_the_test_and_fails_it_with_strict(
+def test_missing_recording_skips_or_fails(
     tank: pytest.Pytester,
 ) -> None:
     result = tank.runpytest(*ONLINE, "-rs")
@@ -120,7 +120,7 @@ def test_a_missing_recording_skips_the_test_and_fails_it_with_strict(
     tank.runpytest(*ONLINE, "--tarl-strict").assert_outcomes(failed=1, deselected=1)
 
 
-def test_the_error_for_an_unknown_drift_names_the_known_drifts(tank: pytest.Pytester) -> None:
+def test_unknown_drift_error_names_the_known(tank: pytest.Pytester) -> None:
     result = tank.runpytest(*ONLINE, "--tarl-drift=mud")
     result.stderr.fnmatch_lines(["*No test declares the drift 'mud' (declared: clogged).*"])
     assert result.ret == pytest.ExitCode.USAGE_ERROR
@@ -192,7 +192,7 @@ def test_every_mistake_gives_advice(tank: pytest.Pytester, file: str, old: str, 
     assert not list((tank.path / ".tarl").glob("utility/*"))
 
 
-def test_recording_stops_with_advice_if_the_first_episodes_all_fail(tank: pytest.Pytester) -> None:
+def test_recording_stops_if_all_first_episodes_fail(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(failed=1, deselected=1)
@@ -248,7 +248,7 @@ def test_a_skip_inside_the_test_skips_it(tank: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*no simulator here*"])
 
 
-def test_using_the_fixture_without_the_marker_is_reported_in_one_sentence(tank: pytest.Pytester) -> None:
+def test_fixture_without_marker_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile("def test_it(tarl):\n    pass\n")
     tank.runpytest().stdout.fnmatch_lines(["*without the marker*@pytest.mark.tarl*"])
 
@@ -262,7 +262,7 @@ def test_importing_the_plugin_imports_no_heavy_package(tank: pytest.Pytester) ->
     result.stdout.fnmatch_lines(["[[]]"])
 
 
-def test_learned_bins_are_saved_in_the_recording_and_used_in_comparisons(tank: pytest.Pytester) -> None:
+def test_learned_bins_are_saved_and_used(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "low=0, high=1, bins=10", "bins=6")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     (sensor,) = load(fixture_file(tank)).sensors

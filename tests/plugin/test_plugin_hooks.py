@@ -90,7 +90,7 @@ def test_a_debugger_stops_in_the_code_of_the_node() -> None:
     assert isinstance(reported(ValueError("no node"), pdb=True)[0].excinfo.value, ValueError)
 
 
-def test_a_package_that_imports_ros_is_explained_in_the_setup() -> None:
+def test_setup_explains_a_package_that_imports_ros() -> None:
     error = pytest.Collector.CollectError("no")
     error.__cause__ = ModuleNotFoundError("No module named 'rospy'", name="rospy")
     ((title, hint),) = reported(error, when="setup")[1].sections
@@ -118,7 +118,7 @@ def test_collection_errors_are_one_sentence_or_come_with_advice() -> None:
     assert collected(ModuleNotFoundError("No module named 'nosuch'", name="nosuch")).sections == []
 
 
-def test_an_error_is_located_at_the_innermost_line_outside_tarl() -> None:
+def test_error_is_located_outside_tarl() -> None:
     def entry(path: Path, line: int) -> Any:
         return SimpleNamespace(path=path, lineno=line)
 
@@ -161,7 +161,7 @@ def concluded(body: Callable[[], Any], marked: bool = True, taken: bool = True) 
     raise AssertionError("the hook yielded twice")
 
 
-def test_an_episode_is_concluded_once_with_the_error_of_its_body() -> None:
+def test_episode_is_concluded_once() -> None:
     assert concluded(lambda: "done") == ([None], "done")
     ends, error = concluded(lambda: 1 / 0)
     assert ends == [error]
@@ -169,7 +169,7 @@ def test_an_episode_is_concluded_once_with_the_error_of_its_body() -> None:
     assert concluded(lambda: "done", taken=False) == ([], "done")
 
 
-def test_a_misspelt_flag_is_suggested_once_all_flags_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_misspelt_flag_is_suggested_once(monkeypatch: pytest.MonkeyPatch) -> None:
     def loaded(unknown: list[str], *args: str) -> None:
         parser: Any = SimpleNamespace(parse_known_and_unknown_args=lambda _: (None, unknown))
         sent(pytest_load_initial_conftests(parser, [*args]), None)

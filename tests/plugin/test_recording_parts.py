@@ -106,7 +106,7 @@ def test_a_recording_ends_when_its_rule_says_so() -> None:
     assert len(missions.plans) == 3
 
 
-def test_bins_are_not_learned_from_a_broken_episode_or_without_episodes() -> None:
+def test_broken_episode_teaches_no_bins() -> None:
     with pytest.raises(RecordingError, match="0 episodes were requested"):
         run(Missions(), 0)
     with pytest.raises(RecordingError, match=r"\(seed 10\) that did not end: never waits"):
@@ -165,7 +165,7 @@ def test_an_episode_that_cannot_be_repeated_is_noted() -> None:
     assert "is unknown. This" in note
 
 
-def test_too_many_failures_are_reported_before_formulas_that_were_never_judged() -> None:
+def test_failures_are_reported_before_unjudged_formulas() -> None:
     def refused(failing: str, robustness: float, *failures: str) -> str:
         judged = SimpleNamespace(formulas=("up",), robustness=np.array([[robustness]]))
         found: Any = SimpleNamespace(failures=failures, sample=SimpleNamespace(judgements=judged, episodes=7))

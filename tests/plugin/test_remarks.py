@@ -41,7 +41,7 @@ def test_lost_sites_are_named_once_and_at_most_three() -> None:
     assert "`a`, node.py:3 `b`, node.py:3 `c` and 2 more are lost" in told
 
 
-def test_moved_sites_are_named_only_if_other_sites_are_lost() -> None:
+def test_moved_sites_are_named_if_others_are_lost() -> None:
     moved = tuple(place(name, line=7) for name in "abcd")
     assert remarks.lost_sites(recorded(ALL[:4]), now(*moved)) == ()
     assert remarks.lost_sites(recorded(ALL), now(*moved[:1], *ALL[1:4]))[1:] == (
@@ -91,7 +91,7 @@ def judged(formulas: tuple[str, ...], *robustness: list[float]) -> Any:
     return SimpleNamespace(judgements=SimpleNamespace(formulas=formulas, robustness=np.array(robustness)))
 
 
-def test_notes_name_new_formulas_and_formulas_that_were_never_judged() -> None:
+def test_notes_name_new_and_unjudged_formulas() -> None:
     none: Any = SimpleNamespace(judgements=None)
     nan = float("nan")
     assert remarks.other_formulas(none, none) == ()
@@ -140,7 +140,7 @@ def test_detectable_loss_is_at_least_the_tolerance() -> None:
     assert one.verdict.detectable_loss == 5.0
 
 
-def test_a_correction_after_which_nothing_can_be_significant_is_noted() -> None:
+def test_hopeless_correction_is_noted() -> None:
     # 3 and 3 episodes can be shuffled in 20 ways, so that no p-value is below 0.05
     one, _ = corrected([comparison(0.05, 0.05, 3), comparison(0.5, 0.6, 3)], 0.2)
     assert len(one.notes) == 2

@@ -53,7 +53,7 @@ def test_exit_in_a_test_ends_the_run(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*Exit: enough*"])
 
 
-def test_an_error_in_teardown_does_not_count_as_a_failed_mission(tank: pytest.Pytester) -> None:
+def test_teardown_error_is_no_failed_mission(tank: pytest.Pytester) -> None:
     tank.makeconftest(
         """
         import pytest
@@ -69,7 +69,7 @@ def test_an_error_in_teardown_does_not_count_as_a_failed_mission(tank: pytest.Py
     told.stdout.fnmatch_lines(["*failed outside the mission*", "*left open*"])
 
 
-def test_a_test_without_the_fixture_tarl_is_refused_before_it_runs(tank: pytest.Pytester) -> None:
+def test_test_without_the_fixture_is_refused(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "(tarl, tarl_drift):", "():\n    print('ran')")
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
@@ -77,7 +77,7 @@ def test_a_test_without_the_fixture_tarl_is_refused_before_it_runs(tank: pytest.
     told.stdout.no_fnmatch_line("*ran*")
 
 
-def test_a_unittest_method_gets_advice_on_how_to_use_the_fixture(tank: pytest.Pytester) -> None:
+def test_unittest_method_gets_fixture_advice(tank: pytest.Pytester) -> None:
     tank.path.joinpath("test_case.py").write_text(
         """
 import unittest
@@ -141,7 +141,7 @@ def test_parts_of_a_reward_must_be_finite_numbers(tank: pytest.Pytester) -> None
     told.stdout.fnmatch_lines(["*rewards must be finite*"])
 
 
-def test_failed_missions_that_earn_more_because_they_end_early_are_reported(tank: pytest.Pytester) -> None:
+def test_failures_that_earn_more_are_reported(tank: pytest.Pytester) -> None:
     changed(
         tank,
         "test_tank",

@@ -19,11 +19,11 @@ from tests.plugin.tank import RECORD, changed
         ("", False),
     ],
 )
-def test_durability_is_read_from_the_qos_profiles_of_a_bag(profiles: str, latched: bool) -> None:
+def test_durability_comes_from_the_bag(profiles: str, latched: bool) -> None:
     assert _transient(profiles) is latched
 
 
-def test_a_node_receives_each_message_at_the_time_of_its_recording(tank: pytest.Pytester) -> None:
+def test_messages_arrive_at_recorded_times(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     changed(tank, "test_tank", "    drifts={", "    monitor=lambda moment: 0.0,\n    drifts={")
     bag = write_bag(

@@ -47,7 +47,7 @@ def plans(*seeds: int) -> Iterator[tuple[int, EpisodePlan]]:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
-def test_results_do_not_depend_on_which_episodes_were_started_ahead(workers: int) -> None:
+def test_results_ignore_episodes_started_ahead(workers: int) -> None:
     ahead: Any = Ahead(FakeExecutor(workers))
     got = []
     for seed in (3, 1, 4, 1, 5):
@@ -65,7 +65,7 @@ def test_one_worker_starts_no_episode_ahead() -> None:
     assert executor.begun == [2]
 
 
-def test_enough_episodes_are_started_ahead_to_keep_all_workers_busy() -> None:
+def test_started_episodes_keep_workers_busy() -> None:
     executor = FakeExecutor(2)
     ahead: Any = Ahead(executor)
     ahead.foresee(plans(*range(20)))
@@ -75,7 +75,7 @@ def test_enough_episodes_are_started_ahead_to_keep_all_workers_busy() -> None:
     assert executor.begun == list(range(AHEAD * 2 + 3))
 
 
-def test_results_are_kept_until_requested_and_unrequested_runs_are_cancelled() -> None:
+def test_unrequested_runs_are_cancelled() -> None:
     executor = FakeExecutor(2)
     ahead: Any = Ahead(executor)
     ahead.foresee(plans(1, 2, 3))
@@ -90,7 +90,7 @@ def test_results_are_kept_until_requested_and_unrequested_runs_are_cancelled() -
 
 
 @pytest.mark.parametrize(("workers", "ahead"), [(1, 0), (2, 4), (3, 6)])
-def test_episodes_are_yielded_in_order_and_begun_ahead_for_several_workers(workers: int, ahead: int) -> None:
+def test_episodes_are_yielded_in_order(workers: int, ahead: int) -> None:
     executor: Any = FakeExecutor(workers)
     found: Any = in_order(executor, (EpisodePlan(seed) for seed in range(10)))
     assert executor.begun == []
@@ -122,7 +122,7 @@ def test_a_deferred_episode_runs_when_its_result_is_requested() -> None:
     assert one.cancel() is True
 
 
-def test_a_started_episode_runs_once_and_counts_against_the_episodes_ahead() -> None:
+def test_started_episode_runs_once() -> None:
     executor = FakeExecutor(2)
     ahead: Any = Ahead(executor)
     ahead.foresee(plans(1, 1, 2))

@@ -19,9 +19,7 @@ from pytest_tarl.schedules import Profile, Schedule, profile
         ("burst", {1.99: 0.0, 2.0: 1.0, 5.99: 1.0, 6.0: 0.0, 99.0: 0.0}),
     ],
 )
-def test_a_drift_begins_at_its_moment_and_lasts_for_its_duration(
-    shape: Any, shares: dict[float, float]
-) -> None:
+def test_drift_lasts_for_its_duration(shape: Any, shares: dict[float, float]) -> None:
     found = Profile(shape, at=2.0, lasts=4.0)
     assert {time: found.share(time) for time in shares} == shares
 

@@ -49,7 +49,7 @@ def test_recordings_select_every_test_that_declares_the_drift() -> None:
     assert selecting.chosen(item("wind"), options("record", AS_WRITTEN))
 
 
-def test_comparisons_select_the_scenario_and_tests_that_lack_the_fixture() -> None:
+def test_comparisons_select_the_scenario() -> None:
     assert selecting.chosen(item("mud", runs="mud"), options("online", "mud"))
     assert not selecting.chosen(item("mud", "wind", runs="wind"), options("online", "mud"))
     assert selecting.chosen(item("mud", takes=False), options("online", "mud"))
@@ -104,7 +104,7 @@ def test_a_space_is_distinguished_from_other_drifts() -> None:
     assert not selecting.is_space(None)
 
 
-def test_a_method_of_a_test_case_gets_the_fixture_through_another_fixture() -> None:
+def test_test_case_method_gets_the_fixture_indirectly() -> None:
     class Plain:
         pass
 

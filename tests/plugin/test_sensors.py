@@ -46,7 +46,7 @@ def test_booleans_integers_and_categories_need_no_bins() -> None:
 
 
 @pytest.mark.parametrize("expr", ["speed", "self.heading", "self.state['yaw'].value", "a.b[0]"])
-def test_a_condition_reads_the_variable_that_contains_the_value_of_the_sensor(expr: str) -> None:
+def test_condition_reads_the_variable_of_the_sensor(expr: str) -> None:
     assert not Sensor("x").guardable
     assert Sensor("x", expr=expr).guardable
     assert Sensor("x", expr=expr).path == ""
@@ -102,7 +102,7 @@ def test_numbers_of_any_type_have_a_bin(value: object) -> None:
     assert Sensor("x", low=0, high=2, bins=2).bin(value) == 1
 
 
-def test_a_number_that_exceeds_the_largest_float_is_outside_the_range() -> None:
+def test_huge_number_is_outside_the_range() -> None:
     assert Sensor("x", low=0, high=1, bins=2).bin(10**400) == 2
     assert Sensor("x", low=0, high=1, bins=2).bin(-(10**400)) == -1
 
@@ -139,7 +139,7 @@ HEADING = Sensor("heading", topic="/pose", field="theta", bins=8, angle=True, un
 
 
 @given(st.floats(-20, 20), st.integers(-3, 3))
-def test_an_angle_has_the_same_bin_after_any_number_of_turns(value: float, turns: int) -> None:
+def test_angle_bin_ignores_full_turns(value: float, turns: int) -> None:
     index = HEADING.bin(value)
     assert index is not None
     assert 0 <= index < 8
@@ -148,7 +148,7 @@ def test_an_angle_has_the_same_bin_after_any_number_of_turns(value: float, turns
     assert (index - turned) % 8 in (0, 1, 7)  # on a bin edge, rounding decides
 
 
-def test_an_interval_of_an_angle_may_cross_the_end_of_its_range() -> None:
+def test_angle_interval_may_cross_the_range_end() -> None:
     low, high = HEADING.interval(7, 8)
     assert (low, high) == pytest.approx((0.75 * math.pi, -0.75 * math.pi))
     assert HEADING.interval(3, 10) == (-math.inf, math.inf)
@@ -175,7 +175,7 @@ def test_bins_cannot_be_learned_from_a_constant() -> None:
         learned_edges((Sensor("x", bins=4),), {"x": [2.0, 2.0, math.nan]})
 
 
-def test_a_sensor_that_is_a_function_is_never_in_a_condition() -> None:
+def test_function_sensor_is_never_in_a_condition() -> None:
     def nearest(scan: SimpleNamespace) -> float:
         return float(min(scan.ranges))
 

@@ -61,7 +61,7 @@ def run(terminal: Any = None, **given: Any) -> TarlSession:
     return TarlSession(config(terminal), options(**given))
 
 
-def test_reports_wait_for_all_tests_only_with_holm_or_a_total() -> None:
+def test_reports_wait_only_with_holm_or_a_total() -> None:
     assert not _of_all_tests(options())
     assert _of_all_tests(options(holm=True))
     assert _of_all_tests(options(total=100))
@@ -90,7 +90,7 @@ def scenarios(drifts: Any, takes: bool = True, marked: bool = True, **given: Any
     return found[0][1:3] if found else None
 
 
-def test_a_test_runs_once_for_each_scenario_that_the_options_select() -> None:
+def test_test_runs_once_per_selected_scenario() -> None:
     both = {"mud": 0.5, "world": SPACE}
     assert scenarios(both) == (["mud", "world"], ["mud", "world"])
     assert scenarios(None) == ([None], ["online"])
@@ -128,7 +128,7 @@ def collected(of: TarlSession, *items: Any) -> tuple[list[Any], list[Any]]:
     return found, gone
 
 
-def test_tests_without_the_marker_are_deselected_and_holm_counts_the_remaining_tests() -> None:
+def test_unmarked_tests_are_deselected() -> None:
     one, other, plain = item("a"), item("b"), item("c", marked=False)
     of: Any = run(holm=True)
     of.options = SimpleNamespace(drift=None, mode="online", holm=True, total=None)
@@ -204,7 +204,7 @@ def compared(name: str) -> Compared:
     return Compared(name, Path(), 80, comparison, none, {})
 
 
-def test_shared_episodes_go_to_undecided_comparisons_and_all_are_concluded_with_notes(
+def test_shared_episodes_go_to_undecided_comparisons(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     said: list[Any] = []
@@ -274,7 +274,7 @@ def protocol(monkeypatch: pytest.MonkeyPatch, *, interrupted: bool = False, **gi
     return said
 
 
-def test_each_test_is_reported_when_it_ends_unless_all_are_corrected_together(
+def test_each_test_is_reported_at_its_end(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert protocol(monkeypatch) == ["a started", "told a", "b started", "told a, b"]
@@ -327,7 +327,7 @@ def others(monkeypatch: pytest.MonkeyPatch, **given: Any) -> list[str]:
     return [*found]
 
 
-def test_repairs_and_new_designs_get_the_other_tests_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_repairs_get_the_other_tests(monkeypatch: pytest.MonkeyPatch) -> None:
     assert others(monkeypatch, mode="repair") == ["b"]
     assert others(monkeypatch, mode="stress", stress_repair=True) == ["b"]
     assert others(monkeypatch, mode="record", drift="mud") == ["b"]

@@ -84,7 +84,7 @@ def test_confidence_recording_ends_when_the_rate_is_shown() -> None:
     assert run(Settling(sure, 2), ".F" * 10) is None
 
 
-def test_the_summary_states_the_result_of_a_recording_with_a_confidence() -> None:
+def test_summary_states_the_recording_confidence() -> None:
     sure = designated(min_success=0.5, confidence=0.95)
     told = {}
     for results in ("F" * 7, "." * 7, ".F"):
@@ -99,7 +99,7 @@ def test_the_summary_states_the_result_of_a_recording_with_a_confidence() -> Non
 
 
 @pytest.mark.parametrize(("total", "fits"), [(-1.0, True), (2.0, True), (-1.01, False), (2.01, False)])
-def test_a_total_may_lie_on_the_ends_of_its_range(total: float, fits: bool) -> None:
+def test_total_may_lie_on_its_range_ends(total: float, fits: bool) -> None:
     within(mission(True, total), None)
     if fits:
         within(mission(True, total), (-1.0, 2.0))

@@ -107,7 +107,7 @@ def test_test_with_four_sensors_is_recorded_and_compared(
     assert {site["path"] for site in found["sites"]} == {"planner.py", "motor.py"}
 
 
-def test_workers_give_the_same_result_with_sensors_of_every_kind(project: pytest.Pytester) -> None:
+def test_workers_agree_with_sensors_of_every_kind(project: pytest.Pytester) -> None:
     project.runpytest("--tarl-record", "--tarl-episodes=6").assert_outcomes(passed=1)
     here = fixture_file(project).read_bytes()
     project.runpytest("--tarl-record", "--tarl-episodes=6", "--tarl-workers=2").assert_outcomes(passed=1)

@@ -63,13 +63,13 @@ def test_the_cause_of_a_silent_node_is_repaired(tank: pytest.Pytester) -> None:
     ran.stdout.fnmatch_lines(["*repair *accepted: LOWEST*"])
 
 
-def test_a_recording_under_a_drift_still_needs_a_node_that_publishes(careful: pytest.Pytester) -> None:
+def test_drifted_recording_needs_a_publishing_node(careful: pytest.Pytester) -> None:
     ran = careful.runpytest(*RECORD, "--tarl-drift=offset")
     ran.assert_outcomes(failed=1, deselected=1)
     ran.stdout.fnmatch_lines(["*published nothing*/level*"])
 
 
-def test_missions_that_fail_without_a_loss_are_degraded_and_get_no_repair(tank: pytest.Pytester) -> None:
+def test_lossless_failures_are_degraded(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(-1.0)")
     tank.runpytest(*RECORD)
     ran = tank.runpytest(*ONLINE, "--tarl-repair")
@@ -86,7 +86,7 @@ def test_missions_that_fail_without_a_loss_are_degraded_and_get_no_repair(tank: 
     ran.stdout.no_fnmatch_line("  next *")
 
 
-def test_a_sensor_that_is_silent_in_some_designed_missions_is_noted(tank: pytest.Pytester) -> None:
+def test_sometimes_silent_sensor_is_noted(tank: pytest.Pytester) -> None:
     changed(
         tank,
         "test_tank",
@@ -107,7 +107,7 @@ def test_a_sensor_that_is_silent_in_some_designed_missions_is_noted(tank: pytest
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*clogged*: degraded*"])
 
 
-def test_a_node_that_is_silent_in_some_designed_missions_is_noted(tank: pytest.Pytester) -> None:
+def test_sometimes_silent_node_is_noted(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "if level is not None:", "if level is not None and level < 0.95:")
     changed(tank, "test_tank", "float(draws.uniform(0.0, 0.2))", "float(draws.choice([0.1, 1.0]))")
     changed(tank, "test_tank", "float(draws.normal(0, 0.005))", "0.0")

@@ -39,7 +39,7 @@ def said(data: float) -> Any:
     return SimpleNamespace(data=data)
 
 
-def test_a_message_sets_all_sensors_of_its_topic_before_the_cell_changes() -> None:
+def test_message_sets_all_sensors_of_its_topic() -> None:
     found = Situations(X, Y)
     assert not found.one.begun
     found.one.hear("/odom", said(2.5))
@@ -50,7 +50,7 @@ def test_a_message_sets_all_sensors_of_its_topic_before_the_cell_changes() -> No
     assert found.given == [("x", 2.5), ("y", 5.0), ("x", 1.0), ("y", 2.0)]
 
 
-def test_there_is_no_cell_until_all_sensors_have_a_value() -> None:
+def test_cell_needs_all_sensor_values() -> None:
     found = Situations(X, WET)
     found.one.hear("/odom", said(2.5))
     assert (found.cells, found.one.known) == ([None], False)
@@ -69,7 +69,7 @@ def test_signals_get_values_and_change_no_cell() -> None:
     assert found.cells == [(4,)]
 
 
-def test_formulas_get_no_values_of_categories_and_values_to_learn_are_kept() -> None:
+def test_formulas_get_no_category_values() -> None:
     found = Situations(MODE, TO_LEARN)
     found.one.observe({"mode": "manual"})
     found.one.observe({"v": 2})
@@ -80,7 +80,7 @@ def test_formulas_get_no_values_of_categories_and_values_to_learn_are_kept() -> 
     assert found.cells == [None, (1, 0), (1, 0)]
 
 
-def test_topics_are_named_once_in_the_order_of_sensors_and_signals() -> None:
+def test_topics_are_named_once_in_order() -> None:
     again = Signal("speed", topic="/odom", field="data")
     assert Situations(WET, X, signals=(GAP, FUEL, again)).one.subscribed == ("/odom", "/scan")
     assert Situations(WET).one.subscribed == ()
@@ -102,7 +102,7 @@ class Old(Plain):
     _type = "std_msgs/Bool"
 
 
-def test_the_types_of_messages_are_kept_by_the_topic_of_the_sensor() -> None:
+def test_message_types_are_kept_by_topic() -> None:
     found = Situations(X, signals=(GAP,))
     found.one.hear("odom", Bool(1.0))
     found.one.hear("scan", Plain())
@@ -124,7 +124,7 @@ def test_a_situation_without_a_cell_is_explained() -> None:
     assert found.one.problem() is None
 
 
-def test_a_message_without_the_field_names_sensor_topic_and_type() -> None:
+def test_missing_field_error_names_sensor_and_type() -> None:
     words = "Sensor 'x': a message on /odom .SimpleNamespace. has no field 'data'"
     with pytest.raises(SettingsError, match=words):
         Situations(X).one.hear("/odom", SimpleNamespace())
@@ -142,7 +142,7 @@ def observed(name: str, *names: str, followed: bool = True) -> str:
     return ""
 
 
-def test_a_test_with_formulas_may_observe_more_names_unless_one_is_misspelt() -> None:
+def test_misspelt_formula_name_is_refused() -> None:
     assert observed("height", "height") == ""
     assert observed("wett", "wett", "wet") == ""  # the test observes the similar name as well
     assert observed("wett", "wett").endswith("no such sensor or signal: 'wett'; did you mean 'wet'?")

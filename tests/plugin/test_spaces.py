@@ -42,7 +42,7 @@ def test_episode_draws_all_directions(seed: int) -> None:
     assert sizes(WORLD, "world", seed) == {"mud": found["mud"], "odom": size}
 
 
-def test_each_direction_is_drawn_independently_and_options_are_equally_likely() -> None:
+def test_each_direction_is_drawn_independently() -> None:
     alone = drift("t", "world", Drift.space(mud=Drift.range(0.05, 1.0, nominal=1.0)))
     assert [drawn(alone, "world", seed)["mud"] for seed in range(9)] == [
         drawn(WORLD, "world", seed)["mud"] for seed in range(9)
@@ -51,7 +51,7 @@ def test_each_direction_is_drawn_independently_and_options_are_equally_likely() 
     assert 900 < downs < 1100
 
 
-def test_an_episode_without_the_scenario_of_the_space_has_the_nominal_values() -> None:
+def test_other_episodes_have_nominal_values() -> None:
     drifts = {"world": WORLD, "dusk": drift("t", "dusk", {"light": 0.3}), "rain": drift("t", "rain", 0.2)}
     assert value(drifts, (), None, 1) == {"mud": 1.0, "camera": "up"}
     assert value(drifts, (), "dusk", 1) == {"mud": 1.0, "camera": "up", "light": 0.3}
@@ -101,7 +101,7 @@ def test_an_invalid_space_is_reported_in_one_sentence(make: Any, told: str) -> N
         make()
 
 
-def test_a_direction_over_time_is_a_function_whose_size_is_drawn() -> None:
+def test_direction_over_time_has_a_drawn_size() -> None:
     space = Drift.space(
         step=Drift.step(0.0, 1.0, nominal=1.0, at=2.0),
         ramp=Drift.ramp(0.0, 1.0, nominal=1.0, at=2.0, over=4.0),
@@ -161,7 +161,7 @@ def test_recording_is_nominal_and_comparing_draws(
     done.stdout.fnmatch_lines(["*degraded*"])
 
 
-def test_a_misspelt_topic_or_field_of_a_fault_is_reported(spaced: pytest.Pytester) -> None:
+def test_misspelt_fault_target_is_reported(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", 'faults.bias("/level"', 'faults.bias("/levle"')
     told = " ".join(spaced.runpytest(*RECORD).stdout.str().split())
     assert "no message was published on /levle; the topics with messages are /level, /valve" in told

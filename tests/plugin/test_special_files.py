@@ -56,7 +56,7 @@ def tarl(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("command", ["show", "apply", "revert", "diff"])
-def test_commands_name_a_path_that_is_not_a_regular_file(command: str, special: Path, tmp_path: Path) -> None:
+def test_commands_name_irregular_files(command: str, special: Path, tmp_path: Path) -> None:
     words = ["diff", "special", "special"] if command == "diff" else [command, "special"]
     done = tarl(tmp_path, "pytest_tarl", *words)
     assert (done.returncode, done.stdout) == (2, "")
@@ -65,7 +65,7 @@ def test_commands_name_a_path_that_is_not_a_regular_file(command: str, special: 
     assert "Traceback" not in done.stderr
 
 
-def test_a_run_refuses_to_record_into_a_pipe_before_its_first_episode(tmp_path: Path) -> None:
+def test_recording_into_a_pipe_is_refused(tmp_path: Path) -> None:
     (tmp_path / "keeper.py").write_text(NODE)
     (tmp_path / "test_tank.py").write_text(TEST.replace("    draws =", "    open('begun', 'w')\n    draws ="))
     (tmp_path / RECORDED).parent.mkdir(parents=True)

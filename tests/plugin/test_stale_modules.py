@@ -52,7 +52,7 @@ def found(package: Path, source: str, name: str) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", HOLDING)
-def test_a_module_that_imports_a_dropped_module_counts_as_stale(kind: str, package: Path) -> None:
+def test_importer_of_a_dropped_module_is_stale(kind: str, package: Path) -> None:
     name = "dropped.user" if kind.startswith("relative") else "user_of_dropped"
     assert found(package, HOLDING[kind], name) == [name]
 

@@ -26,7 +26,7 @@ def test_recording_prints_bounds_and_saves_them(tank: pytest.Pytester) -> None:
     assert not stated.mean.exact
 
 
-def test_a_declared_range_makes_the_bound_of_the_mean_exact(tank: pytest.Pytester) -> None:
+def test_declared_range_makes_the_mean_exact(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    total_range=(-25, 0),")
     said(tank, "*with 95 % confidence (totals within the declared range)")
     stated = load(fixture_file(tank)).stated
@@ -48,7 +48,7 @@ def test_equal_episodes_are_reported_as_one_tested_world(tank: pytest.Pytester) 
     said(tank, "  only one world was tested: all 16 episodes are equal*")
 
 
-def test_with_a_stated_confidence_recording_continues_until_it_can_decide(tank: pytest.Pytester) -> None:
+def test_stated_confidence_prolongs_recording(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     stated = load(fixture_file(tank)).stated
@@ -58,7 +58,7 @@ def test_with_a_stated_confidence_recording_continues_until_it_can_decide(tank: 
     assert stated.success.method == "confidence sequence"
 
 
-def test_with_a_stated_confidence_too_many_failures_end_the_recording(tank: pytest.Pytester) -> None:
+def test_too_many_failures_end_the_recording(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
     changed(tank, "test_tank", "< 0.1, ", "< 0.1 and draws.random() < 0.5, ")
     told = tank.runpytest(*RECORD)

@@ -34,7 +34,7 @@ def written(summary: Summary, *closing: str) -> list[str]:
     return lines
 
 
-def test_reports_are_separated_by_empty_lines_and_end_with_the_closing_lines() -> None:
+def test_reports_are_separated_by_empty_lines() -> None:
     told = written(collected(report("one", "two"), report("three\x1b[1m")), "The end.")
     assert told == ["= TARL =", "one\ntwo", "\nthree\\x1b[1m", "\nThe end."]
 

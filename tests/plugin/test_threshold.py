@@ -10,7 +10,7 @@ from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 
 @pytest.mark.usefixtures("quick_acceptance")
-def test_a_sensor_with_one_edge_can_be_recorded_compared_and_repaired(tank: pytest.Pytester) -> None:
+def test_one_edge_sensor_can_be_repaired(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "low=0, high=1, bins=10", "edges=(0.5,)")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = tank.runpytest(*ONLINE, "--tarl-repair", "--tarl-seed=3")

@@ -66,7 +66,7 @@ def test_undecided_comparison_gets_spare_episodes(
     )
 
 
-def test_a_shared_comparison_equals_a_separate_comparison_with_as_many_episodes(
+def test_shared_comparison_equals_a_separate_one(
     sharing: pytest.Pytester,
 ) -> None:
     """The command in the output repeats the comparison, with the same episodes and the same loss."""
@@ -82,7 +82,7 @@ def test_a_shared_comparison_equals_a_separate_comparison_with_as_many_episodes(
         assert alone["verdict"]["loss"] == pytest.approx(one["verdict"]["loss"])
 
 
-def test_shared_episodes_are_the_same_for_any_number_of_workers(sharing: pytest.Pytester) -> None:
+def test_workers_share_the_same_episodes(sharing: pytest.Pytester) -> None:
     kept: list[dict[str, object]] = []
     for workers in ("1", "2"):
         sharing.runpytest("--tarl-online", "--tarl-total=60", f"--tarl-workers={workers}")
@@ -90,7 +90,7 @@ def test_shared_episodes_are_the_same_for_any_number_of_workers(sharing: pytest.
     assert kept[0] == kept[1]
 
 
-def test_no_episode_runs_twice_and_no_finished_episodes_are_kept(sharing: pytest.Pytester) -> None:
+def test_no_episode_runs_twice(sharing: pytest.Pytester) -> None:
     file = sharing.path / "ran.txt"
     count = f'with open({str(file)!r}, "a") as kept:\n        kept.write("x")\n    draws = tarl.rng("world")'
     changed(sharing, "test_tank", 'draws = tarl.rng("world")', count)
@@ -118,7 +118,7 @@ def test_flags_that_contradict_a_total_are_named(more: dict[str, object], words:
         options({**FLAGS, "online": True, "total": 80, **more})
 
 
-def test_a_total_too_small_for_all_comparisons_is_refused_before_any_episode(
+def test_too_small_total_is_refused(
     sharing: pytest.Pytester,
 ) -> None:
     changed(sharing, "test_tank", DRIFTS, THREE)
@@ -133,7 +133,7 @@ def test_a_shared_total_is_refused_with_xdist(sharing: pytest.Pytester) -> None:
     told.stderr.fnmatch_lines(["*--tarl-total shares episodes over all tests of a run, but with -n*"])
 
 
-def test_an_error_in_one_test_does_not_take_episodes_from_the_others(sharing: pytest.Pytester) -> None:
+def test_failing_test_takes_no_shared_episodes(sharing: pytest.Pytester) -> None:
     Path(sharing.path / "test_broken.py").write_text(
         (sharing.path / "test_tank.py").read_text().replace("def test_fills", "def test_breaks")
     )

@@ -58,7 +58,7 @@ def properties(case: ElementTree.Element) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("number", ADVICE)
-def test_the_verdict_is_printed_even_if_no_file_can_be_written(
+def test_verdict_is_printed_without_files(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, number: int
 ) -> None:
     deny(monkeypatch, number)
@@ -81,9 +81,7 @@ def test_the_verdict_is_printed_even_if_no_file_can_be_written(
     assert ADVICE[number] in properties(same)["tarl_unwritten"]
 
 
-def test_a_patch_that_cannot_be_written_is_printed_and_can_be_applied(
-    recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unwritable_patch_is_printed(recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as limits:
         deny(limits, errno.ENOSPC)
         text = recorded.runpytest(*ONLINE, "--tarl-repair", "--tarl-drift=clogged").stdout.str()
@@ -113,7 +111,7 @@ def test_recording_reports_an_unwritable_path_before_the_first_episode(
     assert "ZeroDivisionError" not in told.stdout.str()
 
 
-def test_a_disk_that_fills_up_while_recording_keeps_the_old_recording(
+def test_full_disk_keeps_the_old_recording(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = fixture_file(recorded).read_bytes()
@@ -191,7 +189,7 @@ READ_ONLY = "mount --bind . . && mount -o remount,bind,ro . && cd . || exit 99\n
 
 @pytest.mark.skipif(not mounting(), reason="this user cannot mount a file system: unshare -rm is not allowed")
 @pytest.mark.parametrize(("script", "number"), [(FULL, errno.ENOSPC), (READ_ONLY, errno.EROFS)])
-def test_a_full_disk_and_a_read_only_tree_are_reported(
+def test_read_only_tree_is_reported(
     recorded: pytest.Pytester, tmp_path_factory: pytest.TempPathFactory, script: str, number: int
 ) -> None:
     junit = tmp_path_factory.mktemp("outside") / "junit.xml"

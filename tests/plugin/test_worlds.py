@@ -78,7 +78,7 @@ def world(episode: Episode, environment: Any, **more: Any) -> GymnasiumWorld:
     return GymnasiumWorld(episode, environment, **{**ends, "idle": [0.0], **more})  # type: ignore[arg-type]
 
 
-def test_an_environment_publishes_observations_and_receives_actions_until_it_ends() -> None:
+def test_environment_receives_actions_until_it_ends() -> None:
     episode, environment = Episode([None, 0.25, 9.0, 9.0]), Environment()
     ours = world(episode, environment, options={"a": 1})
     begun = ours.observation
@@ -120,7 +120,7 @@ def test_the_action_none_is_refused(answer: Any) -> None:
         world(Episode([answer]), Environment()).step()
 
 
-def test_an_environment_without_a_time_step_is_refused_unless_one_is_given() -> None:
+def test_environment_needs_a_time_step() -> None:
     environment = Environment()
     environment.unwrapped = object()  # type: ignore[assignment]
     with pytest.raises(SettingsError, match="does not say how long a step is: pass dt"):

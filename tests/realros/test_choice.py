@@ -29,9 +29,7 @@ def node(folder: Path, text: str) -> Path:
         ("import (", ()),
     ],
 )
-def test_the_client_library_is_the_library_that_the_nodes_import(
-    tmp_path: Path, text: str, found: tuple[str, ...]
-) -> None:
+def test_client_library_is_the_imported_one(tmp_path: Path, text: str, found: tuple[str, ...]) -> None:
     assert choice.libraries([node(tmp_path, text)]) == found
 
 
@@ -40,9 +38,7 @@ def test_nodes_in_a_folder_are_found(tmp_path: Path) -> None:
     assert choice.libraries([tmp_path]) == ("rclpy",)
 
 
-def test_auto_selects_the_embedded_ros_if_no_other_is_installed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_auto_falls_back_to_the_embedded_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(choice.PathFinder, "find_spec", lambda _: None)
     assert type(choice.make_ros("auto", [node(tmp_path, "import rospy")])) is Ros
 

@@ -116,7 +116,7 @@ except (KeyboardInterrupt, ExternalShutdownException):
 
 @pytest.mark.parametrize("generation", ["ros1", "ros2"])
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGKILL])
-def test_missions_of_a_real_node_are_written_to_the_log(
+def test_real_missions_are_logged(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, generation: str, ending: signal.Signals
 ) -> None:
     if not installed(generation):

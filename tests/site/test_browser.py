@@ -99,7 +99,7 @@ def axe() -> str:
     return (assets.KEPT / "axe" / "axe.min.js").read_text("utf-8")
 
 
-def test_links_lead_to_pages_and_headings_and_nothing_comes_from_the_network(site: Path) -> None:
+def test_links_lead_to_pages_and_headings(site: Path) -> None:
     assert links.broken(site) == []
 
 

@@ -17,7 +17,7 @@ def built(folder: Path, words: str) -> Path:
     return folder
 
 
-def test_the_newest_release_is_the_latest_regardless_of_the_order_of_publication(tmp_path: Path) -> None:
+def test_newest_release_is_the_latest(tmp_path: Path) -> None:
     tree = tmp_path / "tree"
     tree.mkdir()
     for tag in ("dev", "v0.10.0", "v0.9.1", "dev"):
@@ -47,6 +47,6 @@ def test_publishing_a_version_again_removes_its_old_pages(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("tag", ["latest", "schemas", "../up", "", ".git"])
-def test_a_tag_that_is_not_a_folder_name_is_refused(tmp_path: Path, tag: str) -> None:
+def test_unusable_tag_is_refused(tmp_path: Path, tag: str) -> None:
     with pytest.raises(ValueError, match="cannot name a version"):
         publish(built(tmp_path / "site", "x"), tmp_path, tag)

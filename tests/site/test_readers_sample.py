@@ -54,7 +54,7 @@ def test_equal_seeds_draw_equal_samples_of_every_kind(tmp_path: Path) -> None:
     assert sample(tmp_path, 3, seed=1) == drawn[:3]
 
 
-def test_samples_of_other_projects_have_the_shared_kinds_and_hide_their_places(tmp_path: Path) -> None:
+def test_other_projects_have_the_shared_kinds(tmp_path: Path) -> None:
     other = tmp_path / "other-1.0"
     (other / "doc" / "en").mkdir(parents=True)
     (other / "src" / "other").mkdir(parents=True)

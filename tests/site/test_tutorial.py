@@ -23,7 +23,7 @@ RUN = [
 
 
 @pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
-def test_the_commands_of_the_tutorial_print_what_its_page_shows(page: Path, tmp_path: Path) -> None:
+def test_tutorial_commands_print_what_is_shown(page: Path, tmp_path: Path) -> None:
     text = page.read_text("utf-8")
     ran = list(run(text, tmp_path))
     other = [

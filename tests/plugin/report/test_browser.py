@@ -147,7 +147,7 @@ def test_the_page_is_never_wider_than_the_screen(seen):
     assert seen.found["overflow"] <= 0
 
 
-def test_utility_is_drawn_for_both_worlds_and_their_difference_per_terrain(shuttle_seen):
+def test_utility_is_drawn_per_terrain(shuttle_seen):
     images = shuttle_seen.found["images"]
     assert len(images) == len(set(images)) == 6
     assert all(image.startswith("data:image/png;base64,") and len(image) > 100 for image in images)
@@ -159,7 +159,7 @@ def test_code_lines_are_next_to_the_panels(shuttle_seen):
     assert "30  vel = 5 * delta" in labels
 
 
-def test_both_regions_have_an_outline_and_the_tolerance_has_a_band(shuttle_seen):
+def test_regions_have_outlines_and_a_tolerance_band(shuttle_seen):
     assert (
         shuttle_seen.found["outlines"] == 3 + 1
     )  # shapes: the region, two regions of the paper, and the band

@@ -76,7 +76,7 @@ def test_patch_is_mentioned_only_if_it_was_written(varied: Varied, shuttle: Comp
     assert ci.annotation(varied(repair=Repair(True, "", repair.edits)), Path.cwd()).endswith(" everywhere.")
 
 
-def test_there_is_no_annotation_without_a_difference_or_a_culprit(varied: Varied) -> None:
+def test_annotation_needs_a_difference_or_a_culprit(varied: Varied) -> None:
     assert ci.annotation(varied(verdict=QUIET), Path.cwd()) == ""
     assert ci.annotation(varied(culprits=()), Path.cwd()) == ""
 

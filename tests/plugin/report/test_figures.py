@@ -25,7 +25,7 @@ def test_every_figure_is_valid_json_without_nan(any_comparison):
     json.dumps([figures, reward_curves(any_comparison)], allow_nan=False)
 
 
-def test_terrain_splits_the_figure_of_the_shuttle_into_two_rows(shuttle):
+def test_terrain_splits_the_shuttle_figure(shuttle):
     found = figure(shuttle)
     assert [row["title"] for row in found["rows"]] == ["terrain false", "terrain true"]
     assert found["axis"]["title"] == "x (m)"
@@ -101,7 +101,7 @@ def test_without_cells_there_is_no_figure(varied):
     assert figure(varied(cells=())) is None
 
 
-def test_curves_are_running_means_and_keep_the_number_of_episodes(varied):
+def test_curves_are_running_means(varied):
     offline, online = reward_curves(
         varied(totals={"offline": (1.0, 3.0, 5.0), "online": (2.0,)}, searches=())
     )
@@ -155,13 +155,13 @@ def test_scales_include_zero_and_have_round_ticks(values):
         (0.44, 0.2),
     ],
 )
-def test_the_distance_of_ticks_is_the_next_larger_round_number(width: float, step: float) -> None:
+def test_tick_distance_is_the_next_round_number(width: float, step: float) -> None:
     ticks = Scale(-width / 2, width / 2).ticks
     assert [round(later - earlier, 9) for earlier, later in pairwise(ticks)] == [step] * (len(ticks) - 1)
     assert ticks[0] - step < -width / 2 <= ticks[0] < 0.0 < ticks[-1] <= width / 2 < ticks[-1] + step
 
 
-def test_a_scale_has_a_margin_of_a_twentieth_at_both_ends() -> None:
+def test_scale_has_a_margin_at_both_ends() -> None:
     assert scale([4.0, -1.0]) == Scale(-1.25, 4.25)
     assert scale([0.0, math.inf]) == Scale(-1.0, 1.0)
     assert [Scale(-1.0, 3.0).at(value) for value in (-1.0, 0.0, 3.0)] == [0.0, 25.0, 100.0]
@@ -170,9 +170,7 @@ def test_a_scale_has_a_margin_of_a_twentieth_at_both_ends() -> None:
 @pytest.mark.parametrize(
     ("bins", "outside"), [([0, 1, 2, 3], False), ([-1, 0], True), ([2, 4], True), ([0, 3, 2, 5], True)]
 )
-def test_an_axis_says_whether_values_lie_outside_the_range_of_the_sensor(
-    bins: list[int], outside: bool
-) -> None:
+def test_axis_says_whether_values_lie_outside(bins: list[int], outside: bool) -> None:
     sensor = Sensor("x", topic="/x", field="data", low=0.0, high=8.0, bins=4, unit="m")
     words = SimpleNamespace(bin=lambda at, one: f"{at}:{one}", value=lambda *_: "value")
     axis = _axis(sensor, 3, bins, words)
@@ -183,7 +181,7 @@ def test_an_axis_says_whether_values_lie_outside_the_range_of_the_sensor(
     assert axis["centres"] == [2.0 * one + 1.0 for one in bins]
 
 
-def test_the_axis_of_a_category_has_a_tick_for_each_value() -> None:
+def test_category_axis_has_a_tick_per_value() -> None:
     sensor = Sensor("mode", topic="/mode", field="data", categories=("dry", "wet"))
     words = SimpleNamespace(bin=lambda at, one: f"{at}:{one}", value=lambda at, one: f"{at}={one}")
     axis = _axis(sensor, 1, [0, 1], words)
@@ -192,7 +190,7 @@ def test_the_axis_of_a_category_has_a_tick_for_each_value() -> None:
     assert axis["centres"] == [0.0, 1.0]
 
 
-def test_cells_without_a_known_utility_give_a_figure_without_a_scale(two_lists):
+def test_unknown_cells_give_a_figure_without_a_scale(two_lists):
     one = two_lists.lists[0]
     unknown = replace(one, offline=one.offline * math.nan, online=one.online * math.nan)
     found = utility_figure(two_lists, unknown)
@@ -219,7 +217,7 @@ def test_figures_have_five_digits_and_no_infinite_numbers():
     ]
 
 
-def test_curves_of_the_repair_are_named_after_the_recorded_world(varied):
+def test_repair_curves_are_named_after_the_recorded_world(varied):
     totals = dict.fromkeys(("offline", "online", "repaired", "nominal_repaired"), (1.0, 2.0))
     names = [curve["name"] for curve in reward_curves(varied(totals=totals, searches=(), permanent=True))]
     assert names == ["designed", "deployed (mud)", "repaired", "repaired, old world"]

@@ -50,7 +50,7 @@ def test_a_bound_that_needs_more_episodes_says_how_many() -> None:
     assert len(list(sentences(replace(few, needed=0)))) == 3
 
 
-def test_equal_episodes_count_as_one_tested_world_and_give_no_bounds() -> None:
+def test_equal_episodes_give_no_bounds() -> None:
     one = replace(STATED, varied=False)
     (told,) = sentences(one)
     assert told.startswith("only one world was tested: all 200 episodes are equal (197 succeeded)")
@@ -69,7 +69,7 @@ def test_an_infinite_bound_is_not_printed() -> None:
     assert figure(float("-inf")) == "nothing"
 
 
-def test_worlds_with_bounds_are_named_in_the_order_of_the_report(varied: Callable[..., Comparison]) -> None:
+def test_bounded_worlds_are_named_in_report_order(varied: Callable[..., Comparison]) -> None:
     few = replace(STATED, episodes=10)
     stated = {"nominal_repaired": few, "offline": STATED}
     assert list(worlds(varied(stated=stated))) == [("designed", STATED), ("designed, repaired", few)]

@@ -59,9 +59,7 @@ TEXTS = st.lists(st.sampled_from(["a = 1", "b = 2", "c = 3", ""]), max_size=12)
 
 
 @given(TEXTS, TEXTS, st.integers(0, 2))
-def test_each_line_of_a_patch_is_found_at_its_numbers(
-    before: list[str], after: list[str], around: int
-) -> None:
+def test_each_patch_line_is_found_at_its_numbers(before: list[str], after: list[str], around: int) -> None:
     made = list(unified_diff(before, after, "a/x", "b/x", lineterm="", n=around))
     found = list(patch_lines("\n".join(made)))
     assert len(found) == len(made)
@@ -76,7 +74,7 @@ def test_each_line_of_a_patch_is_found_at_its_numbers(
         assert (line.new is not None) == (line.kind in ("kept", "added"))
 
 
-def test_the_lines_after_a_hunk_belong_to_the_next_file() -> None:
+def test_lines_after_a_hunk_belong_to_the_next_file() -> None:
     diff = "--- a/x\n+++ b/x\n@@ -1,3 +1,2 @@\n a\n b\n-c\n--- a/y\n+++ b/y\n@@ -1,2 +1,3 @@\n a\n b\n+c\n--- a/z\n"
     kinds = [line.kind for line in patch_lines(diff)]
     part = ["file", "file", "hunk", "kept", "kept"]

@@ -62,9 +62,7 @@ def test_nothing_in_a_hostile_page_runs(
     assert seen.found["violations"] == seen.console == []
 
 
-def test_names_of_a_hundred_kilobytes_do_not_break_the_page(
-    browser: str, shuttle: Comparison, tmp_path: Path
-) -> None:
+def test_huge_names_do_not_break_the_page(browser: str, shuttle: Comparison, tmp_path: Path) -> None:
     seen = opened(browser, render(replace(shuttle, test=HUGE, drift=HUGE)), tmp_path, probe=PROBE)
     assert (seen.found["report"], seen.found["ran"], seen.found["scripts"]) == ("drawn", None, SCRIPTS)
 

@@ -76,11 +76,11 @@ def test_every_figure_has_a_caption_and_a_label(page):
     assert all(len(attributes["aria-label"]) > 40 for attributes in plots)
 
 
-def test_there_are_three_scripts_and_none_comes_from_the_data(page, any_comparison):
+def test_page_scripts_never_come_from_the_data(page, any_comparison):
     assert [tag for tag, _ in page.elements].count("script") == 3
 
 
-def test_the_page_is_smaller_than_two_and_a_quarter_megabytes(any_comparison):
+def test_page_is_small(any_comparison):
     assert len(render(any_comparison).encode()) < 2_250_000
 
 
@@ -114,7 +114,7 @@ def test_markup_in_notes_code_and_categories_is_escaped(two_lists):
     assert code in "".join(Page(text).words)
 
 
-def test_the_page_contains_the_patch_and_the_command_that_applies_it(shuttle):
+def test_page_contains_patch_and_apply_command(shuttle):
     text = Page(render(shuttle)).text
     assert "vel = ( 12.0 if terrain and 4.167 <= pos <= 7.083 else 5 ) * delta" in text
     assert "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
@@ -138,13 +138,13 @@ def test_one_list_has_no_tabs(shuttle):
     assert not any(a.get("role") == "tab" for _, a in Page(render(shuttle)).elements)
 
 
-def test_a_page_without_lists_gives_the_reason_and_the_next_step(listless):
+def test_page_without_lists_gives_the_next_step(listless):
     text = Page(render(listless)).text
     assert "No taint list can be compared" in text
     assert "pytest tests/test_traveller.py::test_delivers --tarl-record" in text
 
 
-def test_a_page_without_a_region_says_so_and_has_no_slices(placeless):
+def test_page_without_a_region_has_no_slices(placeless):
     text = Page(render(placeless)).text
     assert "No single situation stands out." in text
     assert "There are no slices, because no region was found." in text
@@ -165,7 +165,7 @@ def test_the_title_can_be_set_and_is_escaped(shuttle):
     assert "<title>Degraded: A &lt;b&gt; world (mud)</title>" in render(shuttle, title="A <b> world")
 
 
-def test_the_same_comparison_gives_the_same_file_and_no_temporary_file(shuttle, tmp_path):
+def test_same_comparison_gives_the_same_file(shuttle, tmp_path):
     path = tmp_path / "report" / "delivers.html"
     write(shuttle, path)
     first = path.read_bytes()

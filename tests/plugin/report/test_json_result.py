@@ -87,7 +87,7 @@ def test_the_document_has_its_keys_in_the_documented_order(shuttle, tmp_path):
     )
 
 
-def test_the_region_is_a_list_of_rectangles_in_sensor_units(shuttle, tmp_path):
+def test_region_is_a_list_of_rectangles_in_sensor_units(shuttle, tmp_path):
     assert written(shuttle, tmp_path)["region"] == [{"x": [4.166666667, 7.083333333], "terrain": [1, 1]}]
 
 
@@ -98,7 +98,7 @@ def test_open_ends_are_null_and_string_categories_are_kept(two_lists, tmp_path):
     assert two == [{"light": ["day", "day"]}, {"light": ["night", "night"]}]
 
 
-def test_a_site_in_two_taint_lists_appears_once_with_its_largest_change(two_lists, tmp_path):
+def test_site_of_two_lists_appears_once(two_lists, tmp_path):
     found = written(two_lists, tmp_path)["sites"]
     shared = two_lists.lists[0].taint_list.sites[1].id
     differences = [
@@ -125,7 +125,7 @@ def test_numbers_that_are_not_finite_become_null(varied, bad, tmp_path):
     jsonschema.validate(found, schema())
 
 
-def test_the_description_of_a_constant_that_follows_a_sensor_names_the_sensor(varied, tmp_path):
+def test_constant_that_follows_a_sensor_names_it(varied, tmp_path):
     one = varied().culprits[0]
     law = OperandEffect("KP", 4.0, -1.7, 2.5, what="KP follows light")
     edit = Edit("a.py", 3, "KP", -1.7, what="scale KP by light")
@@ -143,7 +143,7 @@ def test_numpy_numbers_are_written_as_numbers(varied, tmp_path):
     assert written(varied(verdict=verdict), tmp_path)["verdict"]["loss"] == 1.5
 
 
-def test_without_a_search_repair_is_null_and_without_acceptance_patch_is_null(varied, unrepaired, tmp_path):
+def test_repair_is_null_without_a_search(varied, unrepaired, tmp_path):
     assert written(unrepaired, tmp_path)["repair"] is None
     refused = varied(repair=Repair(False, "", (), reason="budget"))
     assert written(refused, tmp_path)["repair"] == {
@@ -180,7 +180,7 @@ def test_missing_counts_become_zero(shuttle):
     }
 
 
-def test_the_same_comparison_gives_the_same_bytes_and_no_temporary_file(shuttle, tmp_path):
+def test_same_comparison_gives_the_same_bytes(shuttle, tmp_path):
     path = tmp_path / "result.json"
     write(shuttle, path, EPISODES)
     first = path.read_bytes()
@@ -196,7 +196,7 @@ def test_an_unwritable_path_is_reported_in_one_sentence(shuttle, tmp_path):
         write(shuttle, blocked / "result.json", EPISODES)
 
 
-def test_bounds_of_a_world_are_written_with_their_method_and_quantile(varied, tmp_path):
+def test_world_bounds_have_their_method_and_quantile(varied, tmp_path):
     stated = Guarantee(
         episodes=200,
         passed=197,
@@ -229,7 +229,7 @@ def test_bounds_of_a_world_are_written_with_their_method_and_quantile(varied, tm
     }
 
 
-def test_each_formula_has_its_robustness_in_the_worlds_that_were_judged(varied, tmp_path):
+def test_each_formula_has_its_robustness_per_world(varied, tmp_path):
     worlds = {
         "online": FormulaWorld(-0.5, -1.25, 40, 7, 3.5),
         "offline": FormulaWorld(0.75, 0.25, 120, 0, None),
@@ -253,7 +253,7 @@ def test_each_formula_has_its_robustness_in_the_worlds_that_were_judged(varied, 
     ]  # fmt: skip
 
 
-def test_the_reward_in_each_interval_of_a_range_is_written(varied, tmp_path):
+def test_reward_of_each_range_interval_is_written(varied, tmp_path):
     sizes = {"mud": Sizes("mud", 0.0, 3.0, {"online": (0.5, 0.5, 2.5), "repaired": (2.5,)})}
     totals = {"offline": (9.0,), "online": (4.0, 2.0, 1.0), "repaired": (8.0,)}
     found = written(varied(sizes=sizes, totals=totals), tmp_path)
@@ -265,7 +265,7 @@ def test_the_reward_in_each_interval_of_a_range_is_written(varied, tmp_path):
     ]
 
 
-def test_a_partial_repair_is_written_with_its_bounds_but_without_its_diff(varied, tmp_path):
+def test_partial_repair_is_written_without_its_diff(varied, tmp_path):
     partial = Partial("5 → 9 everywhere", 4.5, 3.25, 16.9, -0.5, -1.5, 0.9, "a diff", "a.partial.patch")
     found = written(varied(repair=Repair(False, "", (), partial=partial)), tmp_path)
     jsonschema.validate(found, schema())

@@ -18,7 +18,7 @@ def searched(*methods: str) -> tuple[SearchTrace, ...]:
     return tuple(SearchTrace(method, (1.0,)) for method in methods)
 
 
-def test_a_command_names_drift_seed_and_flags_that_are_not_the_default(varied: Varied) -> None:
+def test_command_names_non_default_flags(varied: Varied) -> None:
     one = varied(seed=0, drift=None)
     assert next_commands.command(one) == f"pytest {TEST} --tarl-online"
     every = varied(seed=3, flags=("--tarl-alpha", "0.1"), target="a file.py::test")
@@ -48,14 +48,12 @@ def test_a_repair_is_repeated_with_its_searches(
     )
 
 
-def test_the_command_omits_the_searches_if_they_found_no_repair(varied: Varied) -> None:
+def test_command_omits_fruitless_searches(varied: Varied) -> None:
     one = varied(seed=0, repair=None, searches=searched("epsilon-greedy"))
     assert next_commands.repeat(one) == f"pytest {TEST} --tarl-online --tarl-drift mud"
 
 
-def test_an_accepted_patch_is_applied_and_a_permanent_drift_recorded(
-    varied: Varied, shuttle: Comparison
-) -> None:
+def test_accepted_patch_is_applied_next(varied: Varied, shuttle: Comparison) -> None:
     repair = shuttle.repair
     assert repair is not None
     apply = "tarl apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch"
@@ -77,9 +75,7 @@ def test_patch_path_is_relative_to_the_start_folder(varied: Varied, folder: str)
     ]
 
 
-def test_a_degraded_test_is_repaired_next_unless_its_missions_cannot_run_again(
-    varied: Varied, unchanged: Comparison
-) -> None:
+def test_degraded_test_is_repaired_next(varied: Varied, unchanged: Comparison) -> None:
     one = varied(seed=0, repair=None)
     assert [*next_commands.next_steps(one)] == [f"pytest {TEST} --tarl-online --tarl-drift mud --tarl-repair"]
     for flag in ("--tarl-log", "--tarl-bag"):
@@ -89,5 +85,5 @@ def test_a_degraded_test_is_repaired_next_unless_its_missions_cannot_run_again(
     assert [*next_commands.next_steps(unchanged)] == []
 
 
-def test_if_taint_lists_were_lost_the_first_command_records_again(varied: Varied) -> None:
+def test_lost_taint_lists_are_recorded_again_first(varied: Varied) -> None:
     assert [*next_commands.next_steps(varied(lists=()))] == [f"pytest {TEST} --tarl-record"]

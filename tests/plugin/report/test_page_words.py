@@ -43,9 +43,7 @@ def test_the_restored_share_is_relative_to_the_lost_reward(
         ([("online", 3)], False),
     ],
 )
-def test_the_designed_curve_is_clipped_if_it_is_the_longest(
-    curves: list[tuple[str, int]], clipped: bool
-) -> None:
+def test_longest_designed_curve_is_clipped(curves: list[tuple[str, int]], clipped: bool) -> None:
     assert html._clipped([{"kind": kind, "mean": [0.0] * count} for kind, count in curves]) is clipped
 
 
@@ -60,7 +58,7 @@ def figure(outside: bool = False) -> dict[str, Any]:
     }
 
 
-def test_the_largest_change_is_named_with_its_place_line_and_row() -> None:
+def test_largest_change_is_named_with_line_and_row() -> None:
     told = html._largest_change(figure())
     assert told == "The largest change, −2.50, is at x 1–2 m, in line 4 (“b = [ 2]”)."
     second = figure()
@@ -71,7 +69,7 @@ def test_the_largest_change_is_named_with_its_place_line_and_row() -> None:
     assert html._largest_change(second | {"rows": []}) == "No cell was visited in both worlds."
 
 
-def test_captions_say_what_a_figure_averages_over_and_leaves_out(varied: Varied) -> None:
+def test_captions_say_what_a_figure_averages(varied: Varied) -> None:
     many = Sensor("lane", categories=tuple("abcdefgh"))
     seven = tuple((0, value, 0) for value in range(7))
     one = varied(sensors=(X, many, TERRAIN), cells=seven, region=Region(seven[:1]))
@@ -114,7 +112,7 @@ def test_boxes_of_an_angle_meet_at_its_ends(cover: list[regions.Box], joined: li
     assert list(regions.closed(cover, 0, 4)) == joined
 
 
-def test_boxes_are_joined_to_their_hull_only_over_unvisited_cells() -> None:
+def test_boxes_are_joined_over_unvisited_cells_only() -> None:
     low, high = ((1, 2), (5, 6)), ((4, 4), (3, 5))
     assert regions.bridged([low, high], []) == (((1, 4), (3, 6)),)
     assert regions.bridged([high, low], [(1, 2), (5, 4)]) == (((1, 4), (3, 6)),)

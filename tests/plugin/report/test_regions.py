@@ -102,7 +102,7 @@ def test_a_long_list_of_boxes_is_shortened():
     assert words(cells, (X, TERRAIN, LANE), seen).endswith("; and 2 more")
 
 
-def test_a_long_list_of_intervals_is_shortened_after_the_unit():
+def test_long_interval_list_is_shortened():
     everything = [(x, 1) for x in range(10)]
     assert words([(x, 1) for x in (0, 2, 4, 6, 8)], seen=everything) == (
         "x 0-1 or 2-3 or 4-5 m or 2 more, terrain true"
@@ -121,7 +121,7 @@ def test_a_region_of_all_categories_is_everywhere():
     assert words([(0,), (1,)], (TERRAIN,), [(0,), (1,)]) == "everywhere"
 
 
-def test_ranges_with_negative_bounds_use_a_word_instead_of_a_dash():
+def test_negative_ranges_use_a_word_for_the_dash():
     heading = Sensor("heading", low=-3, high=3, bins=6, unit="rad")
     assert words([(0,), (1,)], (heading,), [(i,) for i in range(6)]) == "heading -3 to -1 rad"
 
@@ -131,7 +131,7 @@ def test_narrow_bins_get_enough_digits():
     assert words([(3,)], (fine,), [(i,) for i in range(20)]) == "offset 0.015-0.020"
 
 
-def test_a_region_around_the_end_of_an_angle_is_one_range():
+def test_region_around_the_angle_end_is_one_range():
     heading = Sensor("heading", low=-180, high=180, bins=8, unit="deg", angle=True)
     everything = [(i,) for i in range(8)]
     assert words([(0,), (1,), (7,)], (heading,), everything) == "heading above 135 or below -90 deg"

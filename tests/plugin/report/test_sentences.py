@@ -59,12 +59,12 @@ def test_an_average_needs_two_episodes_for_an_interval() -> None:
     assert amounts.expected(11.999999999999998) == 12.0
 
 
-def test_a_repair_is_described_by_its_edits_and_its_condition() -> None:
+def test_repair_is_described_by_edits_and_condition() -> None:
     assert repair_words.repair_words(Repair(True, "wet", EDITS)) == f"{WORDS} where wet"
     assert repair_words.repair_words(Repair(True, "", EDITS)) == f"{WORDS} everywhere"
 
 
-def test_the_line_is_named_once_for_all_edits_of_it() -> None:
+def test_line_of_several_edits_is_named_once() -> None:
     both = (
         Edit("a.py", 3, "-0.1", -0.3),
         Edit("b.py", 4, "KP", 0.5, factor=True),
@@ -81,7 +81,7 @@ def test_best_rejected_candidate_is_shown_with_its_reward() -> None:
     assert repair_words.best_words(run) == f"{WORDS} everywhere (2.50 per episode, mean of 7)"
 
 
-def test_the_line_of_an_attempt_states_its_outcome_and_its_episodes() -> None:
+def test_attempt_line_states_outcome_and_episodes() -> None:
     one = Attempt("5 → 12", "not confirmed", 2.5, 7, True)
     assert (
         repair_words.attempt_words(one)
@@ -105,7 +105,7 @@ def test_a_partial_repair_states_its_gain_with_bounds(varied: Varied) -> None:
     assert repair_words.partial_words(partial, varied(permanent=True)) == expected.format("old world")
 
 
-def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(varied: Varied) -> None:
+def test_repair_refused_as_designed_has_two_remedies(varied: Varied) -> None:
     refused = Repair(False, "", EDITS[:1], reason="nominal gets worse")
     told = repair_words.ways_out(varied(repair=refused))
     assert told.startswith(
@@ -127,7 +127,7 @@ def refused(mean: float, *, reason: Reason = "gain too small", fresh: bool = Tru
     return Repair(False, "", EDITS, history=(Attempt("KP → 3", reason, mean, 8, fresh),))
 
 
-def test_a_repair_that_restores_nearly_all_is_reported_with_a_sufficient_tolerance(varied: Varied) -> None:
+def test_nearly_full_repair_names_a_sufficient_tolerance(varied: Varied) -> None:
     totals = {"offline": (10.0, 10.0), "online": (0.0, 0.0)}
     margin = replace(varied().verdict, tolerance=0.5)
     told = repair_words.wider_tolerance(varied(totals=totals, verdict=margin, repair=refused(9.0)))
@@ -177,7 +177,7 @@ def test_violated_formulas_come_first(varied: Varied) -> None:
     assert not formulas.violated(FORMULAS[1])
 
 
-def test_a_loss_is_printed_with_interval_confidence_and_effect_size(varied: Varied) -> None:
+def test_loss_is_printed_with_interval_and_effect_size(varied: Varied) -> None:
     totals = {"offline": (1.0, 3.0, 5.0), "online": (0.0, 2.0, 4.0)}
     verdict = Verdict("degraded", 0.1, 0.1, 1.0, 1.0, 1.0, LossInterval(0.5, 1.5, 0.9))
     one = varied(totals=totals, verdict=verdict)
@@ -193,7 +193,7 @@ def test_a_loss_is_printed_with_interval_confidence_and_effect_size(varied: Vari
     assert words.loss_words(two) == "about 90 % confidence 0.50 to 1.50; 0.4 standard deviations"
 
 
-def test_worsened_parts_of_the_reward_are_listed_with_the_largest_loss_first(varied: Varied) -> None:
+def test_worsened_reward_parts_are_sorted_by_loss(varied: Varied) -> None:
     parts = {"a": (5.0, 3.0), "b": (1.0, 9.0), "c": (0.0, -8.0), "tiny": (0.0, -0.09), "same": (1.0, 1.0)}
     one = varied(parts=parts, lost={"c": ((12, 1),), "b": ((12, 1),)})
     assert words.lost_parts(one) == [("c", -8.0), ("a", -2.0)]
@@ -222,12 +222,12 @@ def test_path_below_the_root_is_relative() -> None:
     assert words.place("src/a.py", 3, root) == "src/a.py:3"
 
 
-def test_code_is_cut_only_if_it_is_longer_than_the_width() -> None:
+def test_code_longer_than_the_width_is_cut() -> None:
     assert words.one_line("x" * 20, 20) == "x" * 20
     assert words.one_line("x" * 18 + " yz", 20) == "x" * 18 + "…"
 
 
-def test_a_table_row_has_test_drift_rewards_loss_verdict_and_region(varied: Varied) -> None:
+def test_table_row_has_test_drift_and_verdict(varied: Varied) -> None:
     one = varied(totals={"offline": (1.0, 3.0), "online": (0.0,)})
     assert table.row(one) == (
         "tests/test_traveller.py::test_delivers",
@@ -242,14 +242,12 @@ def test_a_table_row_has_test_drift_rewards_loss_verdict_and_region(varied: Vari
     assert table.row(quiet)[1:] == ("online", "n/a", "n/a", "0.10", "no difference", "")
 
 
-def test_three_texts_are_listed_and_further_texts_are_only_counted() -> None:
+def test_texts_beyond_three_are_counted() -> None:
     assert [*terminal._some(["a", "b", "c"])] == ["a", "b", "c"]
     assert [*terminal._some(["a", "b", "c", "d", "e"])] == ["a", "b", "c", "(and 2 more)"]
 
 
-def test_attempts_before_an_accepted_repair_are_counted_and_other_attempts_are_listed(
-    varied: Varied, shuttle: Comparison
-) -> None:
+def test_attempts_before_an_accepted_repair_are_counted(varied: Varied, shuttle: Comparison) -> None:
     history = tuple(Attempt(f"c{n}", "not confirmed", 1.0, 0, True) for n in range(5))
     accepted = shuttle.repair
     assert accepted is not None
@@ -264,7 +262,7 @@ def test_attempts_before_an_accepted_repair_are_counted_and_other_attempts_are_l
     assert [*terminal._repair(varied(repair=None))] == []
 
 
-def test_a_repair_states_the_share_of_the_loss_that_it_restores(varied: Varied) -> None:
+def test_repair_states_the_restored_share(varied: Varied) -> None:
     totals = {"offline": (8.0,), "online": (4.0,), "repaired": (7.0,)}
     assert html._share(varied(totals=totals)) == 75.0
     assert html._share(varied(totals=totals | {"online": (8.0,)})) is None
@@ -278,16 +276,14 @@ def test_a_repair_states_the_share_of_the_loss_that_it_restores(varied: Varied) 
     ("lengths", "expected"),
     [((5, 4, 3), True), ((4, 4, 3), False), ((4, 5, 3), False), ((5,), False)],
 )
-def test_the_designed_curve_is_clipped_where_the_longest_other_curve_ends(
-    lengths: tuple[int, ...], expected: bool
-) -> None:
+def test_designed_curve_is_clipped_at_the_longest_other(lengths: tuple[int, ...], expected: bool) -> None:
     kinds = ("offline", "online", "search")
     curves = [{"kind": kind, "mean": [0.0] * size} for kind, size in zip(kinds, lengths, strict=False)]
     assert html._clipped(curves) is expected
     assert not html._clipped([{"kind": "online", "mean": [0.0]}])
 
 
-def test_the_page_describes_the_largest_change_of_a_figure_in_words() -> None:
+def test_page_describes_the_largest_change() -> None:
     row = {"title": "", "offline": [[1.0, None]], "online": [[0.5, 9.0]]}
     figure = {"sites": [[30, "vel = (\n 5)", "a.py"]], "axis": {"names": ["x 0-1", "x 1-2"]}, "rows": [row]}
     assert html._largest_change(figure) == (

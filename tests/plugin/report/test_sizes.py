@@ -26,7 +26,7 @@ def test_each_size_belongs_to_one_interval() -> None:
     ]
 
 
-def test_each_line_names_an_interval_of_the_range_and_its_rewards() -> None:
+def test_each_line_names_an_interval_and_its_rewards() -> None:
     first, _, last = sizes.lines(COMPARISON)
     assert first.startswith("mud 0 to 1: 7")
     assert last.startswith("mud 2 to 3: 2")
@@ -79,7 +79,7 @@ def test_each_drawing_has_only_the_rows_of_its_range() -> None:
     assert [{row.band.part for row in plot.rows} for plot in sizes.plots(two)] == [{"mud"}, {"worn"}]
 
 
-def test_without_totals_of_the_designed_world_its_line_is_at_zero() -> None:
+def test_designed_line_without_totals_is_at_zero() -> None:
     only: Any = SimpleNamespace(sizes={"mud": ONE}, totals={"online": (4.0, 3.0, 2.0, 1.0)})
     (plot,) = sizes.plots(only)
     assert plot.offline == sizes.HEIGHT

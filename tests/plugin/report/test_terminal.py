@@ -49,7 +49,7 @@ def test_only_commands_and_paths_exceed_the_width(any_comparison, width):
         assert len(line) <= max(width, 40) or line.startswith(WHOLE) or len(line.split()) <= 2
 
 
-def test_a_refused_repair_has_its_reason_and_the_best_candidate_so_far(two_lists):
+def test_refused_repair_has_its_reason(two_lists):
     text = told(two_lists, 200)
     assert "none accepted: the best change found gains too little" in text
     assert "best so far: self.kp × 2.2 at src/follower/node.py:63 where light == 'dusk <&>'" in text
@@ -76,7 +76,7 @@ def test_code_too_long_for_its_location_goes_to_the_next_line(two_lists):
     assert len(code) <= 80
 
 
-def test_a_path_that_is_longer_than_the_line_stays_whole(shuttle):
+def test_path_longer_than_the_line_stays_whole(shuttle):
     long = f"{'a_long_name_of_a_package/' * 4}node.py"
     culprit = replace(shuttle.culprits[0], site=replace(shuttle.culprits[0].site, path=long))
     text = told(replace(shuttle, culprits=(culprit,)), 60)
@@ -90,7 +90,7 @@ def test_unknown_topic_is_named_by_its_call(shuttle):
     assert named.taint_list.name == "unknown topic at relay.py:148 → /velocity"
 
 
-def test_without_a_repair_the_suggested_next_command_searches_for_a_repair(unrepaired):
+def test_next_command_searches_for_a_repair(unrepaired):
     command = "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-seed 1 --tarl-repair"
     assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
 
@@ -103,14 +103,14 @@ def test_detectable_loss_is_stated_without_a_difference(unchanged):
     assert "  next" not in text
 
 
-def test_a_loss_without_a_region_says_so_and_has_no_slices(placeless):
+def test_loss_without_a_region_has_no_slices(placeless):
     text = told(placeless)
     assert "no single situation stands out" in text
     assert "  slices" not in text
     assert "nan" not in text
 
 
-def test_without_taint_lists_the_section_has_the_verdict_and_a_note(listless):
+def test_section_without_taint_lists_has_a_note(listless):
     text = told(listless, 200)
     assert "record again to see slices" in text
     assert "degraded" in text
@@ -146,14 +146,14 @@ def test_every_reason_for_a_refusal_has_its_own_text(varied, reason):
     assert f"none accepted: {reason}\n" not in text
 
 
-def test_no_line_of_the_report_starts_with_a_percent_sign(varied):
+def test_no_report_line_starts_with_a_percent_sign(varied):
     for length in range(40):
         note = "x" * length + " 100 % of 12 % are 12 %."
         found = lines(varied(notes=(note,)), width=60, root=ROOT)
         assert not [line for line in found if line.strip().startswith("%")]
 
 
-def test_every_command_of_the_next_steps_stays_on_one_line(varied):
+def test_next_commands_stay_on_one_line(varied):
     name = "a/very/long/path/of/tests/" * 5 + "test_traveller.py::test_delivers"
     lines = told(varied(permanent=True, test=name, target=name), 80).splitlines()
     assert f"           pytest {name} --tarl-record --tarl-drift mud" in lines
@@ -192,7 +192,7 @@ def test_bounds_have_a_line_for_each_world(varied):
     ]
 
 
-def test_a_partial_repair_is_listed_with_the_command_that_applies_it(varied):
+def test_partial_repair_has_its_apply_command(varied):
     partial = Partial("5 → 9 everywhere", 4.5, 3.25, 16.9, -0.5, -1.5, 0.9, "", "a.partial.patch")
     text = told(varied(repair=Repair(False, "", (), reason="gain too small", partial=partial)), 400)
     assert (

@@ -65,7 +65,7 @@ def test_every_verdict_has_its_own_sentence(varied, verdict, said):
     assert words.verdict_sentence(varied(verdict=verdict)) == said
 
 
-def test_a_loss_that_could_not_have_been_detected_is_stated(varied):
+def test_undetectable_loss_is_stated(varied):
     unseen = varied(verdict=Verdict("no difference", 0.5, 0.5, 0.0, math.inf, 0.5))
     assert words.verdict_sentence(unseen).endswith("; too few episodes were run to detect any loss.")
 

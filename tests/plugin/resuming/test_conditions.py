@@ -93,7 +93,7 @@ def test_a_changed_file_changes_only_its_own_digest(
     assert changed(before, after) == (f"{file} changed" if counts else "")
 
 
-def test_files_outside_the_project_are_named_by_their_whole_path(project: Path) -> None:
+def test_foreign_files_are_named_by_whole_path(project: Path) -> None:
     names = set(
         conditions(
             "tests/test_it.py::test_it",
@@ -107,7 +107,7 @@ def test_files_outside_the_project_are_named_by_their_whole_path(project: Path) 
     assert (project / "robot" / "node.py").resolve().as_posix() in names
 
 
-def test_settings_that_only_select_or_judge_episodes_do_not_count(project: Path) -> None:
+def test_selecting_and_judging_settings_do_not_count(project: Path) -> None:
     assert found(project) == found(project, alpha=0.2, episodes=7, budget=3, workers=2)
 
 
@@ -119,9 +119,7 @@ def test_settings_that_only_select_or_judge_episodes_do_not_count(project: Path)
         ({"sensors": (Sensor("level", bins=2, low=0.0, high=1.0),)}, "the sensors changed"),
     ],
 )
-def test_settings_that_change_the_episodes_are_conditions_of_a_run(
-    project: Path, options: Any, said: str
-) -> None:
+def test_settings_that_change_episodes_count(project: Path, options: Any, said: str) -> None:
     assert changed(found(project), found(project, **options)) == said
 
 
@@ -147,7 +145,7 @@ def test_at_most_three_changes_are_named(before: Any, now: Any, said: str) -> No
     assert changed(before, now) == said
 
 
-def test_a_node_with_the_same_sensors_in_another_order_has_other_conditions(project: Path) -> None:
+def test_reordered_sensors_are_other_conditions(project: Path) -> None:
     first, second = Sensor("level"), Sensor("flow")
     both = found(project, sensors=(first, second))
     assert both == found(project, sensors=(replace(first), second))

@@ -39,7 +39,7 @@ def continued(path: Path) -> Journal:
     kept=st.floats(0, 1),
     rest=st.binary(max_size=12),
 )
-def test_a_file_cut_off_anywhere_keeps_its_whole_episodes_and_is_continued(
+def test_truncated_file_keeps_whole_episodes(
     tmp_path_factory: pytest.TempPathFactory, episodes: list[tuple[int, bytes]], kept: float, rest: bytes
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "cut.episodes"
@@ -69,7 +69,7 @@ def test_no_conditions_are_read_from_a_file_without_episodes(tmp_path: Path, con
     assert conditions_of(path) is None
 
 
-def test_a_new_run_replaces_the_file_at_its_first_episode(tmp_path: Path) -> None:
+def test_new_run_replaces_the_file_at_once(tmp_path: Path) -> None:
     path = written(tmp_path / "a.episodes", [(1, b"old"), (2, b"old")])
     journal = Journal(path, {"keeper.py": "b2"})
     assert conditions_of(path) == (CONDITIONS, 2)
@@ -91,9 +91,7 @@ def test_two_runs_cannot_write_the_same_file(tmp_path: Path) -> None:
     assert conditions_of(path) == (CONDITIONS, 1)
 
 
-def test_on_a_full_disk_the_run_continues_without_keeping_episodes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_full_disk_does_not_stop_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(_: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -106,9 +104,7 @@ def test_on_a_full_disk_the_run_continues_without_keeping_episodes(
     journal.close()
 
 
-def test_episodes_are_written_to_the_disk_once_their_time_is_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_episodes_are_written_after_a_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
     synced: list[float] = []
     monkeypatch.setattr("pytest_tarl.resuming.journal.monotonic", lambda: now[0])

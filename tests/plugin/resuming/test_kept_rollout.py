@@ -112,7 +112,7 @@ def test_a_run_that_was_already_checked_repeats_no_episode(path: Path) -> None:
     assert inner.ran == []
 
 
-def test_the_repeated_episode_is_kept_as_the_second_run_of_its_plan(path: Path) -> None:
+def test_repeated_episode_is_kept_as_second_run(path: Path) -> None:
     first_run(path, 1)
     inner = Inner()
     again = resumed(path, inner)
@@ -179,7 +179,7 @@ def _episode() -> bytes:
     return run_message(EpisodeRun(EpisodePlan(1), trace(1.0), passed=True))
 
 
-def test_a_kept_episode_is_returned_immediately_and_its_request_counts_as_cancelled(path: Path) -> None:
+def test_kept_episode_is_returned_immediately(path: Path) -> None:
     first_run(path, 1)
     pending = resumed(path, Inner(), checked=True).begin(EpisodePlan(1))
     heard: list[EpisodeRun] = []
@@ -196,7 +196,7 @@ def test_a_new_episode_is_passed_on_when_it_ends(path: Path) -> None:
     assert [pending.result()] == heard
 
 
-def test_the_scope_depends_on_the_sites_the_publishers_and_the_sensors(tmp_path: Path) -> None:
+def test_scope_depends_on_sites_publishers_and_sensors(tmp_path: Path) -> None:
     positions: Any = {tmp_path / "a.py": {(1, 0): 0, (2, 0): 1}}
     base, sensors = Instruments(positions, frozenset({1})), (Sensor("level"),)
     others = [

@@ -122,7 +122,7 @@ def test_a_resumed_run_may_ask_for_more_episodes(stopping: pytest.Pytester) -> N
     assert ran(stopping) == 20 - 9 + 1
 
 
-def test_resuming_repeats_the_first_episode_to_detect_a_changed_world(stopping: pytest.Pytester) -> None:
+def test_resuming_repeats_the_first_episode(stopping: pytest.Pytester) -> None:
     changed(stopping, "test_tank", "pump = float", "pump = float(os.environ.get('PUMP', 1)) * float")
     interrupted(stopping, "9 exit", *RECORD)
     with pytest.MonkeyPatch.context() as patched:
@@ -135,7 +135,7 @@ def test_resuming_repeats_the_first_episode_to_detect_a_changed_world(stopping: 
     assert len(kept(stopping)) == 1
 
 
-def test_without_the_resume_flag_a_message_mentions_the_kept_episodes(stopping: pytest.Pytester) -> None:
+def test_message_mentions_kept_episodes(stopping: pytest.Pytester) -> None:
     interrupted(stopping, "9 exit", *RECORD)
     stopping.runpytest(*RECORD).stdout.fnmatch_lines(
         ["*9 finished episodes are kept from an interrupted run*"]

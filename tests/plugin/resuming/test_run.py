@@ -70,7 +70,7 @@ def interrupted(root: Path, count: int = 2, **options: Any) -> None:
     session.run.ended(pytest.ExitCode.INTERRUPTED)
 
 
-def test_the_file_is_named_after_the_test_its_mode_and_its_drift(root: Path) -> None:
+def test_file_is_named_after_test_mode_and_drift(root: Path) -> None:
     runs = [
         (item(root), {}),
         (item(root, "mud"), {"mode": "online"}),
@@ -136,9 +136,7 @@ def test_an_interrupted_test_says_how_many_episodes_are_kept(root: Path, count: 
 @pytest.mark.parametrize(
     ("problem", "reason"), [(OSError(errno.ENOSPC, "disk full"), "disk full"), (OSError("odd"), "odd")]
 )
-def test_an_interrupted_test_says_why_later_episodes_were_not_kept(
-    root: Path, problem: OSError, reason: str
-) -> None:
+def test_interrupted_test_says_what_was_not_kept(root: Path, problem: OSError, reason: str) -> None:
     test = keep(Session(root))
     assert test.journal is not None
     test.journal.problem = problem
@@ -178,7 +176,7 @@ def test_episodes_under_other_conditions_are_mentioned_only_on_request(root: Pat
         Session(root, seed=1, resume=True).test().keeping(ROLLOUT, NOTHING, ())
 
 
-def test_without_kept_episodes_a_message_appears_only_if_resuming_was_requested(root: Path) -> None:
+def test_message_appears_only_if_resuming_was_requested(root: Path) -> None:
     for resume, count in ((True, 1), (False, 0)):
         session = Session(root, resume=resume)
         session.test().keeping(ROLLOUT, NOTHING, ())
@@ -193,9 +191,7 @@ def test_a_file_that_another_run_writes_is_refused(root: Path) -> None:
     first.close()
 
 
-def test_a_file_that_cannot_be_opened_is_refused_with_advice(
-    root: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unopenable_file_is_refused_with_advice(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted(root)
 
     def denied(_: Journal) -> None:
@@ -220,9 +216,7 @@ def test_a_file_that_cannot_be_opened_is_refused_with_advice(
         (pytest.ExitCode.NO_TESTS_COLLECTED, True, 1),
     ],
 )
-def test_only_a_complete_run_removes_the_episodes_of_finished_tests(
-    root: Path, status: int, finished: bool, left: int
-) -> None:
+def test_complete_run_removes_finished_episodes(root: Path, status: int, finished: bool, left: int) -> None:
     session = Session(root)
     test = keep(session)
     test.finished = finished
@@ -233,7 +227,7 @@ def test_only_a_complete_run_removes_the_episodes_of_finished_tests(
     assert test.journal._file is None
 
 
-def test_tests_that_share_a_total_number_of_episodes_are_recognised(root: Path) -> None:
+def test_tests_that_share_a_total_are_recognised(root: Path) -> None:
     shared, alone = Session(root, total=100), Session(root)
     assert shared.test() is shared.test()
     assert shared.test() is not shared.test(item(root, name="test_other"))

@@ -108,14 +108,14 @@ def test_a_goal_is_shown_as_pending_active_and_ended(
 
 
 @pytest.mark.parametrize("given", ["", "None", "0", "''"])
-def test_an_ended_goal_has_an_empty_result_unless_one_is_given(scene: Scene, given: str) -> None:
+def test_ended_goal_has_an_empty_result(scene: Scene, given: str) -> None:
     scene.goal("a")
     scene.do(f"server.set_succeeded({given})", "log.append(len(server.get_default_result().sequence))")
     assert (len(scene.results[0].result.sequence), scene.log[-1]) == (0, 0)
     assert scene.ended() == [("a", SUCCEEDED)]
 
 
-def test_a_newer_goal_requests_the_end_of_the_active_goal(scene: Scene) -> None:
+def test_newer_goal_ends_the_active_one(scene: Scene) -> None:
     scene.goal("a", 1)
     scene.do("accepting = False")
     scene.goal("b", 2)
@@ -164,7 +164,7 @@ def test_cancel_request_selects_goals_by_id_or_stamp(
     assert scene.ended() == ([("b", RECALLED)] if waiting else [])
 
 
-def test_goals_sent_before_the_last_cancel_request_are_recalled_on_arrival(scene: Scene) -> None:
+def test_goals_sent_before_a_cancel_request_are_recalled(scene: Scene) -> None:
     scene.cancel(stamp=2.0)
     scene.cancel(stamp=1.0)
     scene.goal("early", stamp=2.0)
@@ -276,7 +276,7 @@ states.append(client.get_state())
     assert ros.namespace["states"] == [9, False, 9]  # type: ignore[attr-defined]
 
 
-def test_a_client_waits_for_the_server_and_the_result_until_its_limit(start: Start) -> None:
+def test_client_waits_for_server_and_result(start: Start) -> None:
     ros = start("""
 import actionlib, rospy
 from actionlib_tutorials.msg import FibonacciAction, FibonacciGoal

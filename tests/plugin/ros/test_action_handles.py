@@ -110,7 +110,7 @@ def test_a_server_handles_several_goals_at_a_time(start: Start) -> None:
     assert server.shown() == {}
 
 
-def test_a_cancel_request_concerns_one_goal_all_earlier_goals_or_all_goals(start: Start) -> None:
+def test_cancel_request_selects_one_or_earlier_or_all_goals(start: Start) -> None:
     server = Server(start)
     server.goal("a", stamp=1.0)
     server.goal("b", order=0, stamp=2.0)
@@ -174,7 +174,7 @@ def test_a_client_waits_no_longer_than_its_timeout(start: Start) -> None:
         ("DONE", protocol.PREEMPTED, []),
     ],
 )
-def test_a_status_moves_the_client_through_the_states_of_actionlib(
+def test_status_moves_the_client_through_actionlib_states(
     state: str, status: int, expected: list[str]
 ) -> None:
     found = steps(getattr(CommState, state), status)

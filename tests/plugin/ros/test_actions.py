@@ -90,7 +90,7 @@ def test_a_goal_without_a_final_state_is_aborted(start: Start) -> None:
     assert ros.namespace["log"][-1][0] == 6
 
 
-def test_a_client_can_wait_for_a_goal_while_another_thread_spins(start: Start) -> None:
+def test_client_waits_while_another_thread_spins(start: Start) -> None:
     ros = start(SERVER)
     start(
         """
@@ -293,7 +293,7 @@ def test_an_exception_in_an_execute_callback_aborts_the_goal(
     assert "Exception in your execute callback: no" in caplog.text
 
 
-def test_the_error_about_an_unknown_service_lists_the_available_services(start: Start) -> None:
+def test_unknown_service_error_lists_available_services(start: Start) -> None:
     ros = start(LIFECYCLE)
     with pytest.raises(
         Exception, match=r"No node serves /camera/stop now; available services: /camera/change_state"
@@ -337,7 +337,7 @@ def test_an_rclpy_node_calls_a_service_of_the_world(start: Start) -> None:
     assert ros.namespace["said"] == "docked"
 
 
-def test_a_failing_service_handler_fails_the_call_but_not_the_server(start: Start) -> None:
+def test_failing_handler_does_not_end_the_server(start: Start) -> None:
     ros = start("""
         import rospy
         from std_srvs.srv import SetBool
@@ -355,7 +355,7 @@ def test_a_failing_service_handler_fails_the_call_but_not_the_server(start: Star
     assert ros.alive
 
 
-def test_an_rclpy_service_that_returns_no_response_ends_its_node(start: Start) -> None:
+def test_service_without_a_response_ends_its_rclpy_node(start: Start) -> None:
     ros = start("""
         import rclpy
         from std_srvs.srv import Trigger

@@ -133,7 +133,7 @@ def test_a_waypoint_follower_sends_one_goal_after_another(start: Start) -> None:
     assert math.isclose(path[-1], 3.0, abs_tol=0.1)
 
 
-def test_two_runs_with_executors_actions_and_threads_are_bitwise_equal(start: Start) -> None:
+def test_concurrent_runs_are_bitwise_equal(start: Start) -> None:
     def run() -> tuple[list[float], list[str]]:
         ros = start(NAVIGATOR)
         states = heard(ros, "/waypoints/state")
@@ -339,9 +339,7 @@ def test_parameters_change_within_their_descriptors_and_by_service(start: Start)
 
 
 @pytest.mark.parametrize("exclusive", [True, False])
-def test_reentrant_groups_run_callbacks_concurrently_and_exclusive_groups_do_not(
-    start: Start, exclusive: bool
-) -> None:
+def test_only_reentrant_groups_overlap(start: Start, exclusive: bool) -> None:
     kind = "MutuallyExclusiveCallbackGroup" if exclusive else "ReentrantCallbackGroup"
     ros = start(f"""
         import time

@@ -82,9 +82,7 @@ def test_a_muted_bus_discards_the_messages_of_the_world(bus: Bus, program: Progr
     assert not bus.topic("/a").carried
 
 
-def test_a_latched_message_is_delivered_to_later_subscribers_that_want_it(
-    bus: Bus, program: Program, clock: Scheduler
-) -> None:
+def test_latched_message_reaches_later_subscribers(bus: Bus, program: Program, clock: Scheduler) -> None:
     bus.publish("/a", STRING(data="old"), latch=True)
     bus.publish("/a", STRING(data="new"), latch=True)
     bus.publish("/a", STRING(data="gone"))
@@ -98,7 +96,7 @@ def test_a_latched_message_is_delivered_to_later_subscribers_that_want_it(
     assert bus.subscribed == {"/a"}
 
 
-def test_an_invalid_message_of_the_world_is_an_error_in_the_test(bus: Bus) -> None:
+def test_invalid_world_message_is_a_test_error(bus: Bus) -> None:
     with pytest.raises(RecordingError, match=r"^The message published on /a is not valid: "):
         bus.publish("a", "text")
     with pytest.raises(RecordingError, match="is not callable"):
@@ -175,7 +173,7 @@ def test_only_the_endpoints_of_the_ended_process_are_disconnected(
     assert bus.topic("/a").subscriptions == [ends[1]]
 
 
-def test_an_error_of_the_world_is_raised_in_the_test(bus: Bus, program: Program, clock: Scheduler) -> None:
+def test_world_error_is_raised_in_the_test(bus: Bus, program: Program, clock: Scheduler) -> None:
     def fail(_: Any) -> None:
         raise ValueError("first" if clock.failure is None else "second")
 
@@ -287,7 +285,7 @@ def test_an_offered_service_is_created_on_the_first_request(clock: Scheduler) ->
     assert directory.find("/t") is None
 
 
-def test_only_the_current_endpoint_of_a_name_can_be_removed(clock: Scheduler) -> None:
+def test_only_the_current_endpoint_can_be_removed(clock: Scheduler) -> None:
     directory = ServiceDirectory(clock)
     old, new = Endpoint(), Endpoint()
     directory.add("/s", old)  # type: ignore[arg-type]

@@ -116,9 +116,7 @@ def test_bounds_that_are_not_given_are_not_shown(at: At) -> None:
 
 
 @pytest.mark.parametrize(("ticks", "level"), [(0, 2), (3, 1)])
-def test_an_update_at_the_time_of_the_start_has_an_unlimited_frequency(
-    at: At, ticks: int, level: int
-) -> None:
+def test_update_at_the_start_has_unlimited_frequency(at: At, ticks: int, level: int) -> None:
     found = frequency(at, ticks, 0.0, min=5, max=10)
     assert (found.level, values(found)["Actual frequency (Hz)"]) == (level, "inf" if ticks else "0.000000")
 
@@ -186,7 +184,7 @@ def test_stamps_of_ros1_and_ros2_are_read(at: At) -> None:
     assert (task.params.min_acceptable, task.params.max_acceptable) == (-1, 5)
 
 
-def test_tasks_of_a_composite_begin_at_the_given_summary_and_are_merged() -> None:
+def test_composite_tasks_are_merged() -> None:
     seen = []
 
     def fill(level: int, message: str) -> FunctionDiagnosticTask:

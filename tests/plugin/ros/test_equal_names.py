@@ -144,7 +144,7 @@ def test_messages_are_unpickled_by_the_workspace_in_use(two: tuple[Path, Path]) 
     assert fields(again[0]) == fields(again[2]) == fields(again[-1]) == ["oil"]
 
 
-def test_an_unknown_part_of_a_service_or_action_has_no_class(two: tuple[Path, Path]) -> None:
+def test_unknown_action_part_has_no_class(two: tuple[Path, Path]) -> None:
     workspace.search(two[0])
     for module, name in (
         ("robot.srv", "Fill_Goal"),
@@ -156,9 +156,7 @@ def test_an_unknown_part_of_a_service_or_action_has_no_class(two: tuple[Path, Pa
 
 
 @pytest.mark.parametrize("part", ["msg", "srv", "action"])
-def test_names_folders_and_settings_come_from_the_workspace_in_use(
-    part: Part, two: tuple[Path, Path]
-) -> None:
+def test_names_come_from_the_current_workspace(part: Part, two: tuple[Path, Path]) -> None:
     only = {"water": "OnlyWater", "oil": "OnlyOil"}
     for place, field in (*zip(two, only, strict=True), (two[0], "water")):
         workspace.search(place)
@@ -171,7 +169,7 @@ def test_names_folders_and_settings_come_from_the_workspace_in_use(
         assert f"float64 {field}" in "".join(workspace.workspace_types(part).values())
 
 
-def test_workspaces_are_read_again_only_when_a_new_workspace_is_searched(
+def test_workspaces_are_read_again_only_for_a_new_one(
     two: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[Path] = []
@@ -208,7 +206,7 @@ def test_a_repository_inside_another_comes_first_for_its_nodes(two: tuple[Path, 
     assert [None if each is None else each.root for each in found] == [inner, one]
 
 
-def test_known_packages_do_not_search_the_repository_of_a_test(two: tuple[Path, Path]) -> None:
+def test_known_packages_do_not_search_the_repository(two: tuple[Path, Path]) -> None:
     write(two[0], {"test_it.py": "from pytest_tarl.ros import message_type\nmessage_type('std_msgs/String')"})
     runpy.run_path(str(two[0] / "test_it.py"))
     assert workspace._SEARCHED == []

@@ -65,7 +65,7 @@ def test_asyncio_sleeps_in_virtual_time(start: Start) -> None:
     assert asyncio._get_running_loop() is None
 
 
-def test_two_nodes_have_loops_of_their_own_and_block_inside_of_them(start: Start) -> None:
+def test_two_nodes_have_their_own_loops(start: Start) -> None:
     ros = start("")
     out = heard(ros, "/out")
     body = """
@@ -150,7 +150,7 @@ def test_python_does_not_wait_for_pools_of_an_episode() -> None:
     assert not [thread for thread in pools._threads_queues if "_tarl_task" in vars(thread)]
 
 
-def test_a_server_in_a_thread_does_not_stop_the_virtual_clock(start: Start) -> None:
+def test_threaded_server_does_not_stop_the_clock(start: Start) -> None:
     ros = start("")
     out = heard(ros, "/out")
     start(HEAD.format(name="server") + """
@@ -171,7 +171,7 @@ server.server_close()
     assert texts(out) == ["alive at 1.00"]
 
 
-def test_an_error_in_a_coroutine_is_an_error_of_the_node(start: Start) -> None:
+def test_coroutine_error_is_a_node_error(start: Start) -> None:
     with pytest.raises(NodeError, match=r"Node '/talker' raised KeyError: 'gone' \(.*line 14, in main\)"):
         start(
             HEAD.format(name="talker")

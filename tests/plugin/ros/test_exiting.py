@@ -32,7 +32,7 @@ def ending(tank: pytest.Pytester, place: str, status: int) -> None:
 
 
 @pytest.mark.parametrize("place", ["loop", "callback"])
-def test_an_exit_with_a_status_fails_the_test_with_a_sentence(tank: pytest.Pytester, place: str) -> None:
+def test_exit_status_fails_the_test(tank: pytest.Pytester, place: str) -> None:
     ending(tank, place, 7)
     real = os._exit
     told = tank.runpytest_subprocess("test_tank.py")
@@ -42,9 +42,7 @@ def test_an_exit_with_a_status_fails_the_test_with_a_sentence(tank: pytest.Pytes
 
 
 @pytest.mark.parametrize("place", ["loop", "callback"])
-def test_after_an_exit_without_error_the_test_continues_without_the_node(
-    tank: pytest.Pytester, place: str
-) -> None:
+def test_test_continues_after_a_clean_node_exit(tank: pytest.Pytester, place: str) -> None:
     ending(tank, place, 0)
     told = tank.runpytest_subprocess("test_tank.py")
     told.assert_outcomes(failed=1, passed=1)
@@ -58,7 +56,7 @@ def test_a_recording_says_that_its_episodes_failed(tank: pytest.Pytester) -> Non
     told.stdout.fnmatch_lines(["5 of the first 5 episodes failed*tank not full*"])
 
 
-def test_a_forked_child_of_a_node_still_ends_at_once(tank: pytest.Pytester) -> None:
+def test_forked_child_ends_at_once(tank: pytest.Pytester) -> None:
     forks = "                import os\n                child = os.fork()\n                if not child:\n"
     forks += "                    os._exit(5)\n"
     forks += "                assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 5"

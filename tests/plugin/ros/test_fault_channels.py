@@ -49,18 +49,18 @@ def arrivals(
 SENT = [(0.0, "a"), (1.0, "b"), (2.0, "c"), (3.0, "d")]
 
 
-def test_a_message_is_lost_if_the_random_number_is_below_the_probability() -> None:
+def test_message_is_lost_with_the_given_probability() -> None:
     found = arrivals(faults.dropout("/t", 1.0), 0.5, SENT, 0.49, 0.5, 0.51, 0.0)
     assert found == [[], [(0.0, "b")], [(0.0, "c")], []]
 
 
-def test_a_message_arrives_twice_if_the_random_number_is_below_the_probability() -> None:
+def test_message_arrives_twice_with_the_given_probability() -> None:
     found = arrivals(faults.duplicates("/t", 1.0), 0.5, SENT, 0.49, 0.5, 0.51, 0.0)
     assert [len(one) for one in found] == [2, 1, 1, 2]
     assert found[0] == [(0.0, "a"), (0.0, "a")]
 
 
-def test_a_reordered_message_waits_for_its_successor_which_draws_no_random_number() -> None:
+def test_reordered_message_waits_for_its_successor() -> None:
     found = arrivals(faults.reordering("/t", 1.0), 0.5, SENT, 0.49, 0.5, 0.3)
     assert found == [[], [(0.0, "b"), (0.0, "a")], [(0.0, "c")], []]
 
@@ -72,7 +72,7 @@ def test_frozen_topic_repeats_its_last_value() -> None:
     assert arrivals(faults.freeze("/t", 9.0), 2.5, SENT[1:]) == [[(0.0, "b")], [(0.0, "b")], [(0.0, "d")]]
 
 
-def test_every_message_is_delayed_by_the_size_of_the_fault() -> None:
+def test_messages_are_delayed_by_the_fault_size() -> None:
     assert arrivals(faults.latency("/t", 9.0), 0.25, SENT[:2]) == [[(0.25, "a")], [(0.25, "b")]]
 
 
@@ -102,9 +102,7 @@ def test_noise_is_added_from_a_centred_normal_distribution() -> None:
         (faults.quantisation("/t", "x", 1), 0.5, math.inf, math.inf),
     ],
 )
-def test_a_fault_of_a_field_changes_only_that_field_of_a_copy(
-    fault: Any, size: float, value: float, expected: float
-) -> None:
+def test_field_fault_changes_a_copy(fault: Any, size: float, value: float, expected: float) -> None:
     sent = Vector3(x=value, y=value)
     ((delay, message),) = fault.begin(size, Draws())(sent, 5.0)
     assert (delay, message.x, message.y, sent.x) == (0.0, expected, value, value)
@@ -122,7 +120,7 @@ def test_swapped_fields_are_exchanged_in_a_copy() -> None:
     assert faults.swapped("/t", "x", "z").field == "x, z"
 
 
-def test_an_element_of_a_sequence_inside_a_message_is_changed() -> None:
+def test_sequence_element_of_a_message_is_changed() -> None:
     odometry = Odometry()
     changed = altered(odometry, "pose.covariance.7", lambda x: x + 2.0)
     assert [changed.pose.covariance[at] for at in (6, 7, 8)] == [0.0, 2.0, 0.0]
@@ -191,7 +189,7 @@ class Both:
         self.items[at] = value
 
 
-def test_values_of_a_message_are_stored_as_items_or_as_attributes() -> None:
+def test_message_values_are_items_or_attributes() -> None:
     message = Both()
     store(message, "x", 3.0)
     store(message, "1", 4.0)
@@ -241,7 +239,7 @@ def test_invalid_sizes_and_names_are_refused(make: Any) -> None:
 @pytest.mark.parametrize(
     ("value", "found"), [(0, 0.0), (1e9, 1e9), (-0.1, None), (1.1e9, None), ("1", None), (math.nan, None)]
 )
-def test_a_value_is_a_moment_if_the_clock_can_represent_its_time(value: Any, found: float | None) -> None:
+def test_representable_time_is_a_moment(value: Any, found: float | None) -> None:
     assert moment(value) == found
 
 
@@ -283,7 +281,7 @@ def test_each_active_fault_has_random_numbers_of_its_own() -> None:
     assert one.calls[0][2] != other.calls[0][2]
 
 
-def test_declared_faults_are_checked_only_in_an_episode_without_active_faults() -> None:
+def test_faults_are_checked_only_without_active_faults() -> None:
     one: Any = Recorder()
     Faults({"a": one}).check(None)
     Faults({"a": one}, {"a": (one, 1.0)}).check(None)

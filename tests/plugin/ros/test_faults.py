@@ -75,7 +75,7 @@ def test_the_standard_deviation_of_noise_is_its_size() -> None:
     assert abs(found.mean()) < 0.05
 
 
-def test_the_share_of_lost_and_repeated_messages_is_the_size() -> None:
+def test_fault_size_is_the_share_of_messages() -> None:
     sent = [float(i) for i in range(400)]
     kept = values(faults.dropout("/in", 1.0), 0.3, sent)
     assert kept == sorted(kept)
@@ -86,7 +86,7 @@ def test_the_share_of_lost_and_repeated_messages_is_the_size() -> None:
     assert 480 < len(twice) < 560
 
 
-def test_all_messages_arrive_and_reordered_messages_arrive_after_their_successor() -> None:
+def test_reordered_messages_arrive_after_their_successor() -> None:
     sent = [float(i) for i in range(100)]
     found = values(faults.reordering("/in", 1.0), 0.4, sent)
     assert sorted(found) in (sent, sent[:-1])  # the last message may still wait for a successor
@@ -95,7 +95,7 @@ def test_all_messages_arrive_and_reordered_messages_arrive_after_their_successor
     assert values(faults.reordering("/in", 1.0), 1.0, [1, 2, 3, 4]) == [2, 1, 4, 3]
 
 
-def test_a_frozen_topic_repeats_its_last_message_for_the_given_time() -> None:
+def test_frozen_topic_repeats_for_the_given_time() -> None:
     sent = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     assert values(faults.freeze("/in", 9.0, at=0.15), 0.2, sent) == [1.0, 2.0, 2.0, 2.0, 5.0, 6.0]
     assert values(faults.freeze("/in", 9.0), 9.0, sent) == [1.0] * 6
@@ -119,7 +119,7 @@ def test_swapped_axes_exchange_two_fields() -> None:
     assert heard == [(2.0, 1.0)]
 
 
-def test_faults_apply_to_messages_that_a_node_receives_and_sends(start: Start) -> None:
+def test_faults_apply_to_received_and_sent_messages(start: Start) -> None:
     ros = start(REPEATER)
     faults.bias("/in", "data", 0, 1).install(ros, "a", 1.0, generator(1, "a"))
     faults.latency("/out", 1.0).install(ros, "b", 0.15, generator(1, "b"))
@@ -192,7 +192,7 @@ def test_invalid_arguments_are_refused(make: Any, told: str) -> None:
         make()
 
 
-def test_a_missing_topic_or_node_is_refused_unless_faults_are_active() -> None:
+def test_missing_fault_target_is_refused() -> None:
     ros = Ros()
     ros.bus.publish("/level", Float64(data=1.0))
     lost, gone = faults.dropout("/levle", 1.0), faults.restart("kepeer", 1.0, at=1)

@@ -84,7 +84,7 @@ def test_a_task_runs_a_function_once() -> None:
     assert (one.result(), one.is_ready(), one.done()) == (3, False, True)
 
 
-def test_a_coroutine_waits_for_its_future_and_wakes_the_executor() -> None:
+def test_coroutine_waits_for_its_future() -> None:
     queue, awaited = Queue(), Future()
 
     async def work(add: int) -> int:
@@ -141,7 +141,7 @@ def node() -> Any:
     return made
 
 
-def test_a_timer_is_ready_each_period_and_skips_missed_periods() -> None:
+def test_timer_skips_missed_periods() -> None:
     owner, calls = node(), list[float]()
     clock = owner.process.scheduler
     timer = Timer(owner, 2 * SECOND, lambda: calls.append(clock.time / SECOND), None)
@@ -160,7 +160,7 @@ def test_a_timer_is_ready_each_period_and_skips_missed_periods() -> None:
     assert (timer.time_since_last_call(), timer.time_until_next_call()) == (5, SECOND - 5)
 
 
-def test_a_cancelled_timer_starts_a_new_period_when_it_is_reset() -> None:
+def test_reset_starts_a_new_period() -> None:
     owner = node()
     timer = Timer(owner, 2 * SECOND, None, None)
     timer.cancel()

@@ -224,7 +224,7 @@ def test_a_subscribe_listener_is_called_for_new_subscribers(start: Start) -> Non
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="select works on sockets only")
-def test_a_node_that_polls_its_keyboard_waits_in_virtual_time(start: Start) -> None:
+def test_keyboard_polling_waits_in_virtual_time(start: Start) -> None:
     reading, writing = os.pipe()
     ros = start(f"""
         import os, select

@@ -29,9 +29,7 @@ posix = pytest.mark.skipif(
 
 @posix
 @pytest.mark.parametrize("code", [HOLDS, SLOW_REGEX], ids=["sum", "regex"])
-def test_without_workers_the_process_ends_with_the_place_of_the_hang(
-    tank: pytest.Pytester, code: str
-) -> None:
+def test_process_ends_with_the_place_of_the_hang(tank: pytest.Pytester, code: str) -> None:
     tank.makeconftest(BRIEF)
     changed(tank, "keeper", "            flow = GAIN * missing", code)
     done = subprocess.run(
@@ -47,7 +45,7 @@ def test_without_workers_the_process_ends_with_the_place_of_the_hang(
 
 
 @posix
-def test_with_workers_the_error_names_the_line_of_the_hang(tank: pytest.Pytester) -> None:
+def test_worker_error_names_the_line_of_the_hang(tank: pytest.Pytester) -> None:
     tank.makeconftest(BRIEF)
     changed(tank, "keeper", "            flow = GAIN * missing", SLOW_REGEX)
     told = tank.runpytest_subprocess(*RECORD, "--tarl-workers=2")
@@ -55,9 +53,7 @@ def test_with_workers_the_error_names_the_line_of_the_hang(tank: pytest.Pytester
     told.stdout.fnmatch_lines(["*did not end: a node held the interpreter at keeper.py, line 2?, in main*"])
 
 
-def test_a_worker_that_stops_responding_is_killed_by_its_parent(
-    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unresponsive_worker_is_killed(tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pool, "SILENCE", 2)
     tank.makeconftest(BRIEF.replace("0.05", "1e6"))  # the worker's own timer does not end it
     changed(tank, "keeper", "            flow = GAIN * missing", HOLDS)
@@ -71,7 +67,7 @@ def test_the_reported_place_is_in_user_code() -> None:
     assert place_held(log) == "/home/me/node.py, line 12, in on_scan"
 
 
-def test_a_long_computation_in_the_test_itself_is_not_stopped(tank: pytest.Pytester) -> None:
+def test_long_computation_in_a_test_continues(tank: pytest.Pytester) -> None:
     tank.makeconftest(BRIEF)
     changed(
         tank, "test_tank", "    for _ in range(25):", "    sum(range(60_000_000))\n    for _ in range(25):"

@@ -104,7 +104,7 @@ def test_rotations_equal_the_rotations_of_their_parameters(roll: float, pitch: f
 
 
 @given(ANGLES, ANGLES, st.floats(-2, 2))
-def test_a_motion_and_its_load_have_the_same_power_in_every_frame(a: float, b: float, x: float) -> None:
+def test_power_is_the_same_in_every_frame(a: float, b: float, x: float) -> None:
     frame = Frame(Rotation.RPY(a, b, x), Vector(x, -x, 1))
     assert kdl.dot(frame * MOTION, frame * LOAD) == pytest.approx(kdl.dot(MOTION, LOAD))
     assert kdl.Equal(kdl.addDelta(POSE, kdl.diff(POSE, frame, 0.5), 0.5), frame, 1e-5)

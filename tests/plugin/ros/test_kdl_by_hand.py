@@ -20,7 +20,7 @@ def matrix(turn: Rotation) -> np.ndarray:
     return np.array([*turn]).reshape(3, 3)
 
 
-def test_vectors_are_added_scaled_and_multiplied_by_the_cross_product() -> None:
+def test_vectors_are_added_scaled_and_crossed() -> None:
     assert numbers(A + B) == [-3.0, 2.5, 9.0]
     assert numbers(A - B) == [5.0, 1.5, -3.0]
     assert numbers(-A) == [-1.0, -2.0, -3.0]
@@ -30,7 +30,7 @@ def test_vectors_are_added_scaled_and_multiplied_by_the_cross_product() -> None:
     assert kdl.dot(A, B) == 15.0
 
 
-def test_a_vector_is_made_of_numbers_of_names_or_of_another_vector() -> None:
+def test_vector_is_made_of_numbers_or_a_vector() -> None:
     assert numbers(Vector()) == [0.0, 0.0, 0.0]
     assert numbers(Vector(1, z=3, y=2)) == [1.0, 2.0, 3.0]
     copied = Vector(A)
@@ -81,7 +81,7 @@ def test_lengths_below_the_tolerance_count_as_zero() -> None:
     assert numbers(one) == [1.0, 0.0, 0.0]
 
 
-def test_vectors_are_equal_if_all_coordinates_differ_by_less_than_a_millionth() -> None:
+def test_vectors_are_equal_within_a_millionth() -> None:
     assert Vector(1, 2, 3.0000009) == A
     assert Vector(1, 2, 3.000002) != A
     assert A != [1.0, 2.0, 3.0]
@@ -110,7 +110,7 @@ def test_a_copy_is_equal_and_independent(one: Any) -> None:
     assert changed != one
 
 
-def test_the_numbers_of_a_twist_are_its_velocity_and_its_angular_velocity() -> None:
+def test_twist_numbers_are_both_velocities() -> None:
     one = Twist(A, B)
     assert numbers(one) == [1.0, 2.0, 3.0, -4.0, 0.5, 6.0]
     assert (one[2], one[3]) == (3.0, -4.0)
@@ -137,7 +137,7 @@ def test_twists_are_added_scaled_and_reversed() -> None:
     assert numbers(Twist.Zero()) == [0.0] * 6
 
 
-def test_moving_the_reference_point_changes_the_velocity_or_the_torque() -> None:
+def test_moved_reference_point_changes_velocity_or_torque() -> None:
     moved = Vector(0, 1, 0)
     twist = Twist(Vector(1, 0, 0), Vector(0, 0, 2)).RefPoint(moved)
     assert numbers(twist) == [-1.0, 0.0, 0.0, 0.0, 0.0, 2.0]  # ω × r = (-2, 0, 0)
@@ -158,7 +158,7 @@ def test_the_parts_of_a_wrench_are_set_as_copies() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, -2.0, pi / 2])
-def test_a_rotation_about_an_axis_turns_the_other_two_axes(angle: float) -> None:
+def test_rotation_turns_the_other_two_axes(angle: float) -> None:
     c, s = cos(angle), sin(angle)
     assert numbers(Rotation.RotX(angle)) == near(1, 0, 0, 0, c, -s, 0, s, c)
     assert numbers(Rotation.RotY(angle)) == near(c, 0, s, 0, 1, 0, -s, 0, c)
@@ -242,7 +242,7 @@ def test_columns_of_a_jacobian_can_be_read_and_set() -> None:
     assert numbers(turn) == [1.0, 0.0, 7.0, 2.0, 0.0, 8.0, 3.0, 1.0, 9.0]
 
 
-def test_entries_of_a_rotation_are_indexed_by_row_and_column() -> None:
+def test_rotation_is_indexed_by_row_and_column() -> None:
     turn = Rotation(*range(9))
     assert [turn[place] for place in ((0, 2), (1, 0), (2, 1))] == [2.0, 3.0, 7.0]
     turn[1, 2] = -1
@@ -266,7 +266,7 @@ def test_the_inverse_undoes_a_rotation() -> None:
     assert turn == TURN.Inverse()
 
 
-def test_a_rotation_turns_every_part_of_a_twist_and_a_wrench() -> None:
+def test_rotation_turns_twists_and_wrenches() -> None:
     expected = [*(matrix(TURN) @ numbers(MOTION.vel)), *(matrix(TURN) @ numbers(MOTION.rot))]
     assert numbers(TURN * MOTION) == pytest.approx(expected)
     expected = [*(matrix(TURN) @ numbers(LOAD.force)), *(matrix(TURN) @ numbers(LOAD.torque))]
@@ -313,7 +313,7 @@ def test_twist_moves_a_frame_along_its_axes() -> None:
     assert Rotation.RotZ(pi / 2 + 0.25) == frame.M
 
 
-def test_differences_are_divided_by_the_time_and_sums_multiply_by_it() -> None:
+def test_differences_are_divided_by_time() -> None:
     assert numbers(kdl.diff(A, B, 2)) == [-2.5, -0.75, 1.5]
     assert numbers(kdl.addDelta(A, Vector(1, 2, 3), 2)) == [3.0, 6.0, 9.0]
     turned = kdl.addDelta(Rotation.RotX(0.2), Vector(0, 0, 0.3), 2)

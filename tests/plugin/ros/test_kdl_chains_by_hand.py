@@ -110,7 +110,7 @@ def test_a_fixed_joint_does_not_move() -> None:
     assert Joint(one).getName() == "f"
 
 
-def test_the_pose_of_a_segment_at_joint_value_zero_is_its_tip() -> None:
+def test_segment_pose_at_zero_is_its_tip() -> None:
     tip = Frame(Rotation.RotX(0.2), Vector(1, 0, 0))
     one = Segment("s", Joint("j", Joint.RotZ, 1, 0.5), tip)
     assert one.getFrameToTip() == tip
@@ -137,7 +137,7 @@ def link(name: str, kind: JointKind = Joint.RotZ) -> Segment:
     return Segment(name, Joint(f"{name}_joint", kind), Frame(Vector(1, 0, 0)))
 
 
-def test_a_tree_takes_segments_at_known_places_with_new_names() -> None:
+def test_tree_takes_segments_with_new_names() -> None:
     tree = Tree("base")
     assert tree.addSegment(link("a"), "base")
     assert tree.addSegment(link("b", Joint.Fixed), "a")
@@ -154,7 +154,7 @@ def test_a_tree_takes_segments_at_known_places_with_new_names() -> None:
             tree.getChain(root, tip)
 
 
-def test_a_tree_takes_the_segments_of_a_chain_one_after_another() -> None:
+def test_tree_takes_the_segments_of_a_chain() -> None:
     chain, tree = Chain(), Tree()
     for name in ("a", "b"):
         chain.addSegment(link(name))
@@ -197,7 +197,7 @@ def test_the_jacobian_is_the_derivative_of_the_pose(count: int) -> None:
         )
 
 
-def test_sizes_that_do_not_match_are_refused_by_every_solver() -> None:
+def test_mismatched_sizes_are_refused() -> None:
     chain, pose = arm(), Frame()
     forward, speeds = ChainFkSolverPos_recursive(chain), ChainIkSolverVel_pinv(chain)
     short, right = joints(0.0), JntArray(3)
@@ -230,7 +230,7 @@ def test_joint_speeds_approximate_the_twist_as_well_as_possible() -> None:
     assert speeds.data.tolist() == [0.0, 0.0, 0.0]
 
 
-def test_a_solver_that_reaches_its_iteration_limit_returns_the_number_of_iterations() -> None:
+def test_solver_returns_its_iterations_at_the_limit() -> None:
     chain, pose, found = arm(), Frame(), JntArray(3)
     forward, speeds = ChainFkSolverPos_recursive(chain), ChainIkSolverVel_pinv(chain)
     forward.JntToCart(joints(0.4, -0.5, 0.2), pose)

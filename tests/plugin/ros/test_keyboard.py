@@ -105,7 +105,7 @@ def test_each_node_has_its_own_keyboard(start: Start) -> None:
 
 
 @pytest.mark.parametrize("called", ["scripts/teleop.py", "teleop.py", "teleop", "/teleop"])
-def test_a_node_is_called_by_its_script_or_its_names(start: Start, called: str) -> None:
+def test_node_is_named_by_script_or_names(start: Start, called: str) -> None:
     ros = start(NODE.format(body=WAITING["input"]), name="teleop")
     keys = heard(ros, "/keys")
     ros.type("a\n", node=called)
@@ -113,7 +113,7 @@ def test_a_node_is_called_by_its_script_or_its_names(start: Start, called: str) 
     assert len(keys) == 1
 
 
-def test_the_error_names_a_node_that_waits_for_a_key_in_vain(start: Start) -> None:
+def test_error_names_a_node_that_waits_for_a_key(start: Start) -> None:
     ros = start(NODE.format(body=WAITING["input"]))
     ros.step(0.1)
     assert ros.notes == (
@@ -133,9 +133,7 @@ def test_code_of_the_test_still_reads_the_real_stdin(start: Start) -> None:
     ros.close()
 
 
-def test_an_input_function_that_the_test_sets_is_not_replaced(
-    start: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_input_function_of_the_test_stays(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     answers = iter(["0.5", "1.5"])
     monkeypatch.setattr("builtins.input", lambda prompt="": next(answers))
     ros = start(
@@ -148,9 +146,7 @@ def test_an_input_function_that_the_test_sets_is_not_replaced(
 
 
 @pytest.mark.parametrize("read", ["input()", "sys.stdin.readline().strip()", "next(sys.stdin).strip()"])
-def test_a_stream_that_the_test_sets_as_stdin_is_not_replaced(
-    read: str, start: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_stdin_of_the_test_stays(read: str, start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     stream = io.StringIO("0.5\n1.5\n")
     monkeypatch.setattr(sys, "stdin", stream)
     ros = Ros()

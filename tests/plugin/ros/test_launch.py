@@ -160,7 +160,7 @@ def sent(tarl: Tarl, topic: str, *values: float) -> Any:
     return getattr(tarl.bus.latest("/end"), "data", None)
 
 
-def test_each_ros1_node_has_its_own_name_parameters_and_modules(tarl: Tarl) -> None:
+def test_each_ros1_node_has_its_own_modules(tarl: Tarl) -> None:
     tarl.launch("one/launch/robot.launch")
     assert sent(tarl, "/r1/start", 1.0) == 3.0 * 10.0 * (0.5 * 10.0 * 2.0)
     assert tarl.ros.subscribed >= {"/r1/start", "/r1/middle"}
@@ -207,7 +207,7 @@ def test_test_tags_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) 
     assert tarl.ros.notes == ()
 
 
-def test_a_node_of_a_hidden_package_runs_with_a_note(tarl: Tarl, tmp_path: Path) -> None:
+def test_hidden_node_runs_with_a_note(tarl: Tarl, tmp_path: Path) -> None:
     write(tmp_path, {"other/CATKIN_IGNORE": ""})
     workspace.forget()
     tarl.launch("one/launch/robot.launch", only=["first", "second"])
@@ -223,7 +223,7 @@ def test_launch_arguments_and_selected_nodes_are_respected(tarl: Tarl) -> None:
     assert tarl.ros.notes == ()
 
 
-def test_a_function_of_the_test_replaces_a_node_under_its_names(tarl: Tarl) -> None:
+def test_test_function_replaces_a_node(tarl: Tarl) -> None:
     heard = []
 
     def laser(node: Any) -> None:
@@ -257,7 +257,7 @@ def test_errors_of_a_function_node_are_errors_of_the_test(tarl: Tarl) -> None:
         tarl.step(0.1)
 
 
-def test_two_nodes_of_one_ros2_program_do_not_share_modules(tarl: Tarl) -> None:
+def test_two_nodes_of_a_program_do_not_share_modules(tarl: Tarl) -> None:
     tarl.launch("relays/launch/pair.launch.xml", arguments={"robot": "r2"})
     # the left node gets gain 2 and top 4 from YAML; no section names the other node, which keeps its defaults
     assert sent(tarl, "/start", 1.0, 3.0) == pytest.approx(4.0 + 2 * 0.002)
@@ -312,7 +312,7 @@ def test_user_mistakes_are_reported_in_one_sentence(
         tarl.launch(file, **options)
 
 
-def test_an_import_without_a_package_is_reported_in_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
+def test_unknown_import_is_reported_in_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
     with pytest.raises(
         NodeError, match=r"No module named 'controllers' .*The package controllers is in the works"
     ):

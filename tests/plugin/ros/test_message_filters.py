@@ -74,7 +74,7 @@ def test_all_messages_of_a_set_lie_within_the_slop() -> None:
     assert fed(made, three, *messages) == [(1.06, 1.12, 1.08)]
 
 
-def test_messages_without_a_header_are_refused_unless_they_are_allowed() -> None:
+def test_messages_without_a_header_need_permission() -> None:
     (one,) = sources(1)
     message_filters.ApproximateTimeSynchronizer([one], 5, 0.1)
     with pytest.raises(TypeError, match="non-stamped"):

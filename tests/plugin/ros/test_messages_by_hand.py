@@ -67,7 +67,7 @@ def test_a_definition_has_fields_constants_and_defaults() -> None:
     ]
 
 
-def test_in_ros1_a_string_constant_keeps_its_hash_and_times_are_primitive() -> None:
+def test_ros1_string_constants_keep_their_hash() -> None:
     found = parse("ros1", "pkg", "Name", "string NAME=a # b\ntime when\nint8 X=1 # c")
     assert [one.value for one in found.constants] == ["a # b", 1]
     assert (found.fields[0].base, found.fields[0].primitive) == ("time", True)
@@ -158,7 +158,7 @@ def both_ways(kind: Any, message: Any) -> bytes:
     return data
 
 
-def test_ros1_numbers_are_little_endian_and_lists_begin_with_their_length() -> None:
+def test_ros1_numbers_are_little_endian() -> None:
     kind = one_field(Field("a", "uint16"), Field("b", "int16", "sequence"), Field("c", "uint8", "array", 2))
     assert both_ways(kind, kind(258, [1, -1], b"\x07\x08")) == bytes.fromhex("0201020000000100ffff0708")
     flags = one_field(Field("a", "bool", "sequence"), Field("b", "float32"), Field("c", "uint8", "sequence"))
@@ -167,7 +167,7 @@ def test_ros1_numbers_are_little_endian_and_lists_begin_with_their_length() -> N
     )
 
 
-def test_ros1_strings_times_and_nested_messages_are_written_without_padding() -> None:
+def test_ros1_values_have_no_padding() -> None:
     kind = one_field(
         Field("a", "string", "sequence"),
         Field("t", "time"),
@@ -192,7 +192,7 @@ def test_ros1_strings_times_and_nested_messages_are_written_without_padding() ->
         (Field("a", "int32", "array", 2), "01000000", "not a valid pkg/Name"),
     ],
 )
-def test_ros1_bytes_that_are_too_few_or_too_many_are_refused(field: Field, data: str, words: str) -> None:
+def test_wrong_number_of_ros1_bytes_is_refused(field: Field, data: str, words: str) -> None:
     with pytest.raises(WireError, match=words):
         ros1_wire.deserialize(one_field(field), bytes.fromhex(data), field_class)
 
@@ -208,7 +208,7 @@ def test_ros1_bytes_of_an_unknown_nested_type_are_refused() -> None:
     assert kind._type == "a/B"
 
 
-def test_the_full_text_of_a_type_contains_each_nested_type_once() -> None:
+def test_full_type_text_contains_each_nested_type_once() -> None:
     text = ros1_wire.full_text(field_class("geometry_msgs/PoseStamped"))
     assert text.startswith("std_msgs/Header header\ngeometry_msgs/Pose pose\n")
     assert text.count("MSG: geometry_msgs/Point\n") == 1

@@ -42,7 +42,7 @@ def test_a_camera_model_projects_points_to_pixels_and_back(kind: str) -> None:
     assert model.distortionCoeffs() is None
 
 
-def test_a_camera_model_respects_binning_and_the_region_of_interest() -> None:
+def test_camera_model_respects_binning_and_region() -> None:
     info = camera()
     info.binning_x = info.binning_y = 2  # type: ignore[attr-defined]
     info.roi.x_offset, info.roi.width, info.roi.height = 8, 32, 48  # type: ignore[attr-defined]
@@ -139,7 +139,7 @@ def test_parts_of_a_message_package_need_no_explicit_import(start: Start) -> Non
     assert (ros.namespace["found"], ros.namespace["missing"]) == ("a", False)
 
 
-def test_a_lazy_transport_subscribes_because_the_world_is_a_subscriber(start: Start) -> None:
+def test_lazy_transport_subscribes_for_the_world(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import Float64
@@ -189,9 +189,7 @@ def test_numpy_bools_fit_ros1_bool_fields(start: Start) -> None:
     assert ros.bus.latest("/on").data is True
 
 
-def test_modules_that_the_test_puts_into_sys_modules_are_imported(
-    start: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_modules_from_the_test_are_imported(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     own = ModuleType("roslib.scriptutil")
     own.ask = lambda: "own"  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "roslib.scriptutil", own)
@@ -298,7 +296,7 @@ def test_multiplexers_are_called_by_their_services(start: Start) -> None:
     assert ros.namespace["found"] == "/odom"
 
 
-def test_a_node_may_choose_signal_handlers_although_none_is_installed(start: Start) -> None:
+def test_node_may_choose_signal_handlers(start: Start) -> None:
     ros = start("""
         import signal
         import rclpy

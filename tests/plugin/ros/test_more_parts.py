@@ -57,7 +57,7 @@ def test_targets_are_set_by_poses_names_and_random_values(start: Start) -> None:
     assert found[8] is True
 
 
-def test_a_pose_as_a_joint_target_needs_a_reachable_place(start: Start) -> None:
+def test_joint_target_pose_must_be_reachable(start: Start) -> None:
     found = run(
         start,
         """
@@ -140,7 +140,7 @@ def stamped(x: float) -> Any:
     return pose
 
 
-def test_solids_and_planes_are_added_to_the_scene_and_removed() -> None:
+def test_scene_objects_are_added_and_removed() -> None:
     made, published = scene()
     made.add_box("box", stamped(1.0), (1, 2, 3))
     made.add_sphere("ball", stamped(2.0), 0.5)
@@ -226,7 +226,7 @@ UPDATER = """
 """
 
 
-def test_an_updater_reports_its_tasks_and_warns_once_without_a_hardware_id(start: Start) -> None:
+def test_updater_warns_once_without_a_hardware_id(start: Start) -> None:
     ros = start(UPDATER)
     seen = heard(ros, "/diagnostics")
     points = heard(ros, "/out")
@@ -286,7 +286,7 @@ def test_a_registered_type_is_transformed_by_its_own_function() -> None:
     assert made.get(type("PointCloud2", (), {})).__name__ == "do_transform_cloud"
 
 
-def test_a_buffer_knows_its_frames_and_their_newest_common_time(start: Start) -> None:
+def test_buffer_knows_frames_and_common_times(start: Start) -> None:
     ros = start("""
         import rospy, tf2_ros
         from geometry_msgs.msg import TransformStamped

@@ -34,7 +34,7 @@ def semantic(text: str, urdf: str = URDF) -> RobotModel:
 # the model
 
 
-def test_the_pose_of_a_link_follows_from_the_joints_before_it() -> None:
+def test_link_pose_follows_from_earlier_joints() -> None:
     state = {"shoulder": 0.4, "elbow": 0.7}
     hand = ARM.pose("hand", state)
     assert [*hand.p] == pytest.approx([cos(0.4) + cos(1.1), sin(0.4) + sin(1.1), 0.0])
@@ -72,7 +72,7 @@ def joint(name: str, kind: str, more: str = "") -> str:
     )
 
 
-def test_a_joint_without_limits_is_unbounded_and_has_speed_one() -> None:
+def test_joint_without_limits_is_unbounded() -> None:
     limit = '<limit lower="-1" upper="1" effort="1" velocity="{}"/>'
     turning = semantic("", joint("j", "continuous", limit.format(3)))
     assert (turning.bounds("j"), turning.speed("j")) == (None, 3.0)
@@ -84,7 +84,7 @@ def test_a_joint_without_limits_is_unbounded_and_has_speed_one() -> None:
     assert ARM.speed("shoulder") == 0.5
 
 
-def test_a_joint_that_mimics_another_does_not_move_by_itself() -> None:
+def test_mimicking_joint_does_not_move_alone() -> None:
     limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
     assert semantic("", joint("j", "revolute", limit)).joints == ("j",)
     assert semantic("", joint("j", "revolute", f'{limit}<mimic joint="other"/>')).joints == ()
@@ -113,7 +113,7 @@ def test_chain_group_has_the_joints_of_its_chain() -> None:
     assert (fore.joints, fore.links, fore.tip, fore.states) == (("elbow",), ("lower",), "lower", {})
 
 
-def test_a_group_is_made_of_links_joints_and_other_groups() -> None:
+def test_group_consists_of_links_joints_and_groups() -> None:
     model = semantic(
         '<group name="links"><link name="upper"/><link name="base"/></group>'
         '<group name="both"><group name="links"/><joint name="elbow"/><joint name="wrist"/></group>'
@@ -152,7 +152,7 @@ def test_group_joints_reach_a_pose_within_limits() -> None:
     assert ARM.reached(fore, "hand", near, {"shoulder": 0.0, "elbow": 0.1}) is None
 
 
-def test_the_search_for_joint_values_can_start_from_values_inside_the_range() -> None:
+def test_joint_search_starts_inside_the_range() -> None:
     assert ARM._between(["elbow"], 0.25) == {"elbow": -1.0}
     assert ARM._between(["elbow"], 0.75) == {"elbow": 1.0}
     assert semantic("", joint("j", "continuous"))._between(["j"], 0.5) == {"j": 0.0}
@@ -188,7 +188,7 @@ def test_straight_motion_takes_as_long_as_its_slowest_joint() -> None:
     assert {tuple(one.accelerations) for one in found.points} == {(0.0, 0.0)}
 
 
-def test_a_motion_at_a_smaller_share_of_the_speed_takes_longer() -> None:
+def test_slower_motion_takes_longer() -> None:
     found = straight(ARM, AT_REST, [{"shoulder": 0.1, "elbow": 0.0}], 0.5)
     assert found.points[-1].time_from_start.to_sec() == pytest.approx(0.4)
     assert len(found.points) == 5
@@ -209,7 +209,7 @@ def test_a_motion_to_the_present_values_has_one_point() -> None:
     assert straight(ARM, AT_REST, [], 1.0).joint_names == []
 
 
-def test_an_interpolated_frame_has_a_position_and_an_orientation_in_between() -> None:
+def test_interpolated_frame_lies_in_between() -> None:
     one, other = Frame(Rotation.RotX(0.2), Vector(0, 0, 0)), Frame(Rotation.RotX(1.0), Vector(4, 0, 2))
     assert along(one, other, 0.25) == Frame(Rotation.RotX(0.4), Vector(1, 0, 0.5))
     assert along(one, other, 0.0) == one
@@ -269,7 +269,7 @@ def test_target_may_be_a_list_mapping_name_or_message(start: Start) -> None:
     ) == [[0.1, 0.2], [0.1, 0.3], [0.4, 0.3], [0.4, 0.5], [1.0, -1.5]]
 
 
-def test_a_target_is_shifted_turned_or_moved_from_the_present_pose(start: Start) -> None:
+def test_target_is_relative_to_the_present_pose(start: Start) -> None:
     found = run(
         start,
         """
@@ -315,7 +315,7 @@ def test_plan_begins_at_the_given_start(start: Start) -> None:
     assert found == [[0.5, 0.5], 0.0, 2, [0.0, 0.0], pytest.approx(0.2)]
 
 
-def test_a_pose_in_the_frame_of_a_link_is_reached(start: Start) -> None:
+def test_pose_in_a_link_frame_is_reached(start: Start) -> None:
     found = run(
         start,
         """
@@ -332,7 +332,7 @@ def test_a_pose_in_the_frame_of_a_link_is_reached(start: Start) -> None:
     assert found == [True, pytest.approx([0.4, 0.0], abs=2e-3), False]
 
 
-def test_random_values_are_within_the_limits_and_the_same_in_every_run(start: Start) -> None:
+def test_random_values_are_repeatable_within_limits(start: Start) -> None:
     source = "    found += [group.get_random_joint_values() for _ in range(5)]"
     one = run(start, source)
     assert all(-2.0 <= value <= 2.0 for values in one for value in values)
@@ -361,7 +361,7 @@ def test_the_robot_has_groups_joints_and_links(start: Start) -> None:
 
 
 @pytest.mark.parametrize("value", [0, -0.1, 1.01])
-def test_scaling_factors_must_be_above_zero_and_at_most_one(value: float, start: Start) -> None:
+def test_scaling_factors_are_between_zero_and_one(value: float, start: Start) -> None:
     source = """
     for name in ("velocity", "acceleration"):
         try:

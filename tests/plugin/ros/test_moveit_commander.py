@@ -56,7 +56,7 @@ def run(start: Start, source: str, seconds: float = 20.0, **parameters: object) 
     return found(ros)
 
 
-def test_moveit_takes_groups_and_links_from_the_descriptions_of_the_robot(start: Start) -> None:
+def test_groups_and_links_come_from_descriptions(start: Start) -> None:
     assert run(
         start,
         """
@@ -115,7 +115,7 @@ def test_a_pose_is_reached_by_inverse_kinematics(start: Start) -> None:
     ]  # fmt: skip
 
 
-def test_a_cartesian_path_is_straight_and_ends_before_the_first_unreachable_point(start: Start) -> None:
+def test_cartesian_path_ends_before_an_unreachable_point(start: Start) -> None:
     source = """
     group.go([0.8, -1.6])
     begin = group.get_current_pose().pose
@@ -132,7 +132,7 @@ def test_a_cartesian_path_is_straight_and_ends_before_the_first_unreachable_poin
     assert run(start, source, 30.0)[2] is True
 
 
-def test_a_motion_can_run_in_the_background_and_be_stopped(start: Start) -> None:
+def test_background_motion_can_be_stopped(start: Start) -> None:
     source = """
     found.append(group.go([1.0, 0.0], wait=False))
     rospy.sleep(0.5)

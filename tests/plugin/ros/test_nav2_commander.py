@@ -132,7 +132,7 @@ def test_paths_maps_and_costmaps_are_requested_from_their_servers(start: Start) 
     assert served == ["hall.yaml", "local", "global", 4]
 
 
-def test_the_navigator_waits_until_nav2_is_active_and_the_robot_is_localized(start: Start) -> None:
+def test_navigator_waits_for_nav2_and_localization(start: Start) -> None:
     source = """
     navigator.setInitialPose(goal)
     navigator.waitUntilNav2Active()

@@ -114,7 +114,7 @@ IMPORTS = "import argparse, os, sys, yaml\nimport rospy\nrospy.init_node('it')\n
 
 
 @pytest.mark.parametrize("line", CASES)
-def test_an_error_says_what_is_missing_and_what_to_do(line: str, start: Start) -> None:
+def test_error_says_what_is_missing_and_what_to_do(line: str, start: Start) -> None:
     with pytest.raises(NodeError, match=CASES[line]) as error:
         start(IMPORTS + line)
     assert "line 4)" in str(error.value)
@@ -122,7 +122,7 @@ def test_an_error_says_what_is_missing_and_what_to_do(line: str, start: Start) -
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-def test_the_error_of_a_node_without_its_arguments_advises_passing_them(block: str, start: Start) -> None:
+def test_error_without_arguments_advises_passing_them(block: str, start: Start) -> None:
     with pytest.raises(NodeError) as error:
         start(block)
     assert re.search(BLOCKS[block], str(error.value))
@@ -159,9 +159,7 @@ LOCALS = ["numpy.zeros(5)", "[numpy.zeros(5)]", "Unequal()", "[Unequal()]"]
 
 
 @pytest.mark.parametrize("value", LOCALS)
-def test_variables_of_the_failing_function_are_not_compared_by_their_own_code(
-    value: str, start: Start
-) -> None:
+def test_variables_are_not_compared_by_their_own_code(value: str, start: Start) -> None:
     code = (
         "import numpy\n\n\nclass Unequal:\n    def __eq__(self, other):\n        raise KeyError(other)\n\n\n"
         f"def on_scan():\n    ranges = {value}\n    return [][3]\n\n\non_scan()\n"
@@ -170,7 +168,7 @@ def test_variables_of_the_failing_function_are_not_compared_by_their_own_code(
         start(code)
 
 
-def test_the_advice_on_arguments_covers_a_variable_that_equals_the_arguments(start: Start) -> None:
+def test_argument_advice_covers_equal_variables(start: Start) -> None:
     with pytest.raises(NodeError, match="The node reads its command line"):
         start("import sys\n\n\ndef run(given):\n    return given[7]\n\n\nrun(list(sys.argv))\n")
 
@@ -184,7 +182,7 @@ MESSAGES = {
 
 
 @pytest.mark.parametrize("line", MESSAGES)
-def test_messages_that_raise_or_are_long_still_give_one_sentence(line: str, start: Start) -> None:
+def test_long_messages_still_give_one_sentence(line: str, start: Start) -> None:
     code = "class Silent(BaseException):\n    def __str__(self):\n        return 1 / 0\n\n    __repr__ = __str__\n\n\n"
     with pytest.raises(NodeError) as error:
         start(f"{code}{line}\n")
@@ -192,7 +190,7 @@ def test_messages_that_raise_or_are_long_still_give_one_sentence(line: str, star
     assert str(error.value).endswith("node.py, line 8).")
 
 
-def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Start) -> None:
+def test_node_may_continue_without_a_module(start: Start) -> None:
     ros = start("""
         import rospy
         found = []
@@ -302,7 +300,7 @@ def failure(start: Start, found: Given, source: str) -> str:
     return str(error.value)
 
 
-def test_a_missing_parameter_names_the_launch_files_that_set_it(start: Start, tmp_path: Path) -> None:
+def test_missing_parameter_names_its_launch_files(start: Start, tmp_path: Path) -> None:
     node = '<node pkg="saver" type="node.py" name="{0}"><param name="port" value="{1}"/></node>'
     found = in_package(
         tmp_path, left=node.format("left_arm", "/dev/a"), right=node.format("right_arm", "/dev/b")
@@ -315,7 +313,7 @@ def test_a_missing_parameter_names_the_launch_files_that_set_it(start: Start, tm
     )
 
 
-def test_a_missing_parameter_names_the_launch_arguments_that_it_needs(start: Start, tmp_path: Path) -> None:
+def test_missing_parameter_names_its_launch_arguments(start: Start, tmp_path: Path) -> None:
     node = '<node pkg="saver" type="node.py" name="{0}"><param name="port" value="$(arg port)"/></node>'
     text = f'<arg name="port"/><arg name="rate" default="5"/>{node.format("arm")}{node.format("other_arm")}'
     found = in_package(tmp_path, bringup=text)
@@ -327,7 +325,7 @@ def test_a_missing_parameter_names_the_launch_arguments_that_it_needs(start: Sta
     )
 
 
-def test_a_parameter_of_rclpy_without_a_value_gets_the_same_advice(start: Start) -> None:
+def test_rclpy_parameter_without_a_value_gets_advice(start: Start) -> None:
     source = """
         import rclpy
         rclpy.init()
@@ -372,7 +370,7 @@ def test_the_command_line_comes_from_the_launch_file(start: Start, tmp_path: Pat
     assert ros.namespace["found"] == {"pip": "1.2.3.4", "file": "a b.txt"}  # type: ignore[attr-defined]
 
 
-def test_a_file_that_includes_the_launch_file_supplies_its_arguments(tmp_path: Path) -> None:
+def test_including_file_supplies_launch_arguments(tmp_path: Path) -> None:
     driver = """<arg name="port"/><node pkg="saver" type="node.py" name="arm" args="$(arg port)">
         <param name="port" value="$(arg port)"/></node>"""
     robot = '<include file="$(find saver)/driver.launch"><arg name="port" value="/dev/arm"/></include>'

@@ -57,7 +57,7 @@ def library() -> ModuleType:
     return importlib.import_module("cv2")
 
 
-def test_a_window_is_not_drawn_and_a_key_wait_takes_virtual_time(start: Start) -> None:
+def test_window_is_not_drawn_and_waits_virtually(start: Start) -> None:
     ros = start(NODE.format(body=LOOP.format(wait="cv2.imshow('view', None); key = cv2.waitKey(100)")))
     keys = heard(ros, "/keys")
     ros.step(0.05)
@@ -71,7 +71,7 @@ def test_a_window_is_not_drawn_and_a_key_wait_takes_virtual_time(start: Start) -
     assert not ros.shutdown_errors
 
 
-def test_a_wait_without_a_limit_ends_with_a_key_or_the_episode(start: Start) -> None:
+def test_unlimited_wait_ends_with_a_key(start: Start) -> None:
     ros = start(NODE.format(body=LOOP.format(wait="key = cv2.waitKey() & 0xFF")))
     keys = heard(ros, "/keys")
     ros.step(5.0)
@@ -95,7 +95,7 @@ def test_a_loop_that_polls_keys_lets_time_pass(start: Start) -> None:
     assert [one.data for one in keys] == [1]
 
 
-def test_trackbars_and_properties_keep_the_values_that_the_node_sets(start: Start) -> None:
+def test_trackbars_keep_their_values(start: Start) -> None:
     body = """
 moved = []
 cv2.createTrackbar("gain", "view", 3, 10, moved.append)
@@ -143,7 +143,7 @@ def test_a_function_that_the_test_sets_is_not_replaced(start: Start, monkeypatch
     assert seen == ["view"]
 
 
-def test_a_replacement_by_the_test_during_an_episode_leaves_the_library_usable(start: Start) -> None:
+def test_test_replacement_leaves_the_library_usable(start: Start) -> None:
     cv2 = library()
     patch = pytest.MonkeyPatch()
     with windows_discarded():

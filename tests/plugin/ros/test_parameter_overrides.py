@@ -38,7 +38,7 @@ FLAT = {"gain": 2.0, "pid.kp": 1.0}
         ({"pilot": {"ros__parameters": None}}, "/pilot", {}),
     ],
 )
-def test_a_node_gets_the_parameters_that_are_meant_for_it(
+def test_node_gets_the_parameters_meant_for_it(
     given: dict[str, Any], node: str, expected: dict[str, Any]
 ) -> None:
     assert overrides(given, node) == expected

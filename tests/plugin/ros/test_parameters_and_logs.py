@@ -50,9 +50,7 @@ def test_parameters_are_listed_below_their_prefixes(
     [(-2, ""), (10, ""), (0, ""), (4, ""), (-3, "out of range"), (11, "out of range"), (1, "not a valid step"),
      (2.0, "expected 'Type.INTEGER' got 'Type.DOUBLE'")],
 )  # fmt: skip
-def test_whole_numbers_stay_within_their_range_and_on_its_steps(
-    start: Start, value: Any, reason: str
-) -> None:
+def test_whole_numbers_stay_on_their_range_steps(start: Start, value: Any, reason: str) -> None:
     said = _set(start, "integer_range=[IntegerRange(from_value=-2, to_value=10, step=2)]", "0", value)
     assert reason in said
     assert bool(reason) is bool(said)
@@ -211,7 +209,7 @@ def test_nodes_may_be_initialised_and_shut_down_twice(start: Start) -> None:
     assert ros.namespace["found"] == [*[True, "down", False] * 2, once, down]  # type: ignore[attr-defined]
 
 
-def test_rospy_may_be_initialised_again_under_the_same_name_only(start: Start) -> None:
+def test_rospy_may_be_initialised_again_with_its_name(start: Start) -> None:
     ros = start("""
         import rospy
         rospy.init_node("n")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.plugin.ros.conftest import Start
 
 
-def test_numbers_that_rospy_nodes_read_are_known_by_absolute_name(start: Start) -> None:
+def test_numbers_read_by_rospy_nodes_are_known(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -27,7 +27,7 @@ def test_numbers_that_rospy_nodes_read_are_known_by_absolute_name(start: Start) 
     assert ros.parameters_read == {"/keeper/gain": 2.0, "/limits/low": 1, "/limits/up/on": True}
 
 
-def test_numbers_that_rclpy_nodes_are_given_are_known_by_absolute_name(start: Start) -> None:
+def test_numbers_given_to_rclpy_nodes_are_known(start: Start) -> None:
     ros = start(
         """
         import rclpy

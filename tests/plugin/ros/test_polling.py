@@ -56,7 +56,7 @@ WAITS = {  # a loop that ends after two seconds
 
 
 @pytest.mark.parametrize("way", WAITS)
-def test_a_loop_that_polls_the_clock_ends_at_the_intended_time(way: str, start: Start) -> None:
+def test_clock_polling_loop_ends_in_time(way: str, start: Start) -> None:
     ros = start(f"{ROSPY}{WAITS[way]}\nended = rospy.get_time()\nrospy.spin()")
     ros.step(1.9)
     assert ros.namespace["ended"] is None  # type: ignore[attr-defined]
@@ -73,9 +73,7 @@ def test_a_loop_that_polls_the_clock_ends_at_the_intended_time(way: str, start: 
     ],
     ids=["is_shutdown", "ok", "spin_once"],
 )
-def test_a_loop_without_a_pause_receives_messages_and_ends_with_the_episode(
-    head: str, loop: str, start: Start
-) -> None:
+def test_loop_without_a_pause_receives_messages(head: str, loop: str, start: Start) -> None:
     ros = start(head + loop)
     keys = heard(ros, "/out")
     for value in (1.0, 2.0):

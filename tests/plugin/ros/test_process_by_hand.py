@@ -82,7 +82,7 @@ def test_hooks_run_before_tasks_are_woken(
     assert trail.count("hook") == 1
 
 
-def test_a_process_that_was_asked_to_end_calls_its_hooks_once(network: Network) -> None:
+def test_ending_process_calls_its_hooks_once(network: Network) -> None:
     trail: list[str] = []
     process = started(network, wait(network))
     process.at_end(lambda: trail.append("hook"))
@@ -100,7 +100,7 @@ def test_a_killed_process_calls_no_hooks(network: Network) -> None:
     assert (trail, process.ended, process.ending, process.tasks) == ([], True, True, [])
 
 
-def test_a_task_that_begins_while_its_process_is_killed_is_also_killed(network: Network) -> None:
+def test_task_of_a_dying_process_is_killed(network: Network) -> None:
     def restarting() -> None:
         try:
             network.scheduler.wait()
@@ -112,7 +112,7 @@ def test_a_task_that_begins_while_its_process_is_killed_is_also_killed(network: 
     assert process.tasks == []
 
 
-def test_services_are_created_once_per_process_or_once_per_episode(network: Network) -> None:
+def test_services_are_created_per_process_or_episode(network: Network) -> None:
     made: list[Any] = []
 
     def part(owner: Any) -> str:
@@ -143,7 +143,7 @@ def failing(network: Network, error: BaseException) -> Process:
     return started(network, program)
 
 
-def test_an_exception_of_the_node_is_an_error_with_its_place(network: Network) -> None:
+def test_node_exception_is_an_error_with_its_place(network: Network) -> None:
     error = ValueError("boom")
     failing(network, error)
     failure = network.scheduler.failure
@@ -160,7 +160,7 @@ def test_the_first_error_is_kept(network: Network) -> None:
 
 
 @pytest.mark.parametrize("error", [RecordingError("x"), KeyboardInterrupt()])
-def test_errors_that_the_node_did_not_cause_are_passed_on(error: BaseException, network: Network) -> None:
+def test_foreign_errors_are_passed_on(error: BaseException, network: Network) -> None:
     failing(network, error)
     assert network.scheduler.failure is error
 
@@ -192,7 +192,7 @@ def test_an_exit_with_a_status_is_an_error(network: Network) -> None:
         ("x" * 100, f"1: {'x' * 100}"),
     ],
 )
-def test_an_exit_with_a_text_has_status_one_and_the_first_line(code: Any, status: str) -> None:
+def test_text_exit_has_status_one(code: Any, status: str) -> None:
     assert _status(SystemExit(code)) == status
 
 
@@ -217,7 +217,7 @@ def test_sys_exit_ends_only_its_task(
     assert "exited with status 4" in str(network.scheduler.failure)
 
 
-def test_errors_during_the_shutdown_are_stored_separately_and_expected_errors_are_ignored(
+def test_shutdown_errors_are_stored_separately(
     network: Network,
 ) -> None:
     class ExpectedError(Exception):
@@ -289,7 +289,7 @@ def in_node(network: Network, task: Callable[[], None], seconds: float = 100.0) 
     return process
 
 
-def test_nodes_read_the_virtual_clock_and_other_code_reads_the_real_clock(network: Network) -> None:
+def test_only_nodes_read_the_virtual_clock(network: Network) -> None:
     network.scheduler.advance(3 * SECOND // 2)
     seen: list[Any] = []
     in_node(
@@ -378,7 +378,7 @@ def test_a_node_reads_whole_lines_when_they_are_typed(network: Network) -> None:
     assert process.part(Terminal).waited
 
 
-def test_a_node_that_reads_all_text_waits_until_the_episode_ends(network: Network) -> None:
+def test_reading_to_the_end_waits_for_the_episode(network: Network) -> None:
     seen: list[Any] = []
 
     def program() -> None:
@@ -417,7 +417,7 @@ def test_select_returns_when_a_line_can_be_read(network: Network) -> None:
     assert seen[2] == "x\n"
 
 
-def test_a_window_gets_each_key_and_stops_waiting_after_its_timeout(network: Network) -> None:
+def test_window_gets_each_key_until_its_timeout(network: Network) -> None:
     seen: list[Any] = []
 
     def program() -> None:

@@ -93,9 +93,7 @@ def test_rospy_subscriber_keeps_the_newest_messages(start: Start, size: str, kep
         ((BEST_EFFORT, VOLATILE), (RELIABLE, LOCAL), False),
     ],
 )
-def test_qos_profiles_connect_according_to_the_table_of_ros_2(
-    offered: Any, wanted: Any, connects: bool
-) -> None:
+def test_qos_profiles_connect_as_in_ros2(offered: Any, wanted: Any, connects: bool) -> None:
     def profile(pair: Any) -> QoSProfile:
         return QoSProfile(depth=1, reliability=pair[0], durability=pair[1])
 
@@ -126,9 +124,7 @@ def test_a_profile_has_the_defaults_of_rclpy() -> None:
 
 
 @pytest.mark.parametrize(("threads", "beside"), [("1", 1), ("2", 2), ("3", 3), ("", 4)])
-def test_an_executor_runs_as_many_callbacks_as_it_has_threads(
-    start: Start, threads: str, beside: int
-) -> None:
+def test_executor_runs_one_callback_per_thread(start: Start, threads: str, beside: int) -> None:
     ros = start(f"""
         import rclpy
         from rclpy.callback_groups import ReentrantCallbackGroup
@@ -208,7 +204,7 @@ def test_a_negative_limit_waits_for_the_result(start: Start) -> None:
     assert ros.namespace["found"] == ("late", 3_000_000_000)  # type: ignore[attr-defined]
 
 
-def test_entities_that_are_ready_at_once_run_in_the_order_of_rclpy(start: Start) -> None:
+def test_ready_entities_run_in_rclpy_order(start: Start) -> None:
     """Timers, subscriptions, guard conditions, clients, services: `_wait_for_ready_callbacks` of rclpy."""
     ros = start("""
         import rclpy
@@ -235,9 +231,7 @@ def test_entities_that_are_ready_at_once_run_in_the_order_of_rclpy(start: Start)
 
 
 @pytest.mark.parametrize(("timeout", "waits"), [(0.1, 0.3), (0.3, 0.3), (0.31, 0.6), (1.0, 1.2)])
-def test_rospy_polls_for_a_service_every_three_tenths_of_a_second(
-    start: Start, timeout: float, waits: float
-) -> None:
+def test_rospy_polls_services_every_three_tenths(start: Start, timeout: float, waits: float) -> None:
     ros = start(f"""
         import rospy
         rospy.init_node("n")
@@ -277,7 +271,7 @@ def test_world_latches_one_message_per_topic(start: Start) -> None:
     assert ros.bus.latest("y").data == "own"
 
 
-def test_muted_messages_of_the_world_reach_no_node_and_are_not_latched(start: Start) -> None:
+def test_muted_messages_reach_no_node(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -343,7 +337,7 @@ def test_alarms_and_tasks_of_an_instant_run_in_order(
     assert found[4:] == ["late"]
 
 
-def test_a_fault_on_a_topic_without_any_message_is_refused(start: Start) -> None:
+def test_fault_on_a_silent_topic_is_refused(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -359,7 +353,7 @@ def test_a_fault_on_a_topic_without_any_message_is_refused(start: Start) -> None
 
 
 @pytest.mark.parametrize("callback", ["lambda message: found.append(message.data) or 7", "answer"])
-def test_the_value_that_a_callback_returns_does_not_block_its_group(start: Start, callback: str) -> None:
+def test_returned_value_does_not_block_the_group(start: Start, callback: str) -> None:
     ros = start(f"""
         import rclpy
         from std_msgs.msg import String

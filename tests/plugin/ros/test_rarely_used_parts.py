@@ -210,7 +210,7 @@ LIFECYCLE = """
 """
 
 
-def test_a_lifecycle_node_goes_through_its_states_and_publishes_only_while_active(start: Start) -> None:
+def test_lifecycle_node_publishes_only_while_active(start: Start) -> None:
     ros = start(LIFECYCLE)
     assert ros.namespace["made"] == [True, 1]
     success = "SUCCESS"
@@ -242,7 +242,7 @@ def test_a_lifecycle_node_goes_through_its_states_and_publishes_only_while_activ
 # event callbacks of rclpy
 
 
-def test_event_callbacks_are_kept_by_name_and_unknown_event_callbacks_are_refused() -> None:
+def test_unknown_event_callbacks_are_refused() -> None:
     def late() -> None:
         pass
 
@@ -316,7 +316,7 @@ CONTAINERS = """
 """
 
 
-def test_containers_run_their_states_and_pass_on_values_and_requests_to_end(start: Start) -> None:
+def test_containers_run_states_and_pass_on_values(start: Start) -> None:
     ros = start(CONTAINERS)
     found = ros.namespace
     assert found["outcomes"] == ["all", "done", "stopped", 5]
@@ -522,7 +522,7 @@ SERVER = """
 """
 
 
-def test_goals_are_cancelled_all_together_or_up_to_an_instant(start: Start) -> None:
+def test_goals_are_cancelled_together_or_up_to_a_time(start: Start) -> None:
     ros = start(SERVER)
     ros.step(5.0)
     found = ros.namespace

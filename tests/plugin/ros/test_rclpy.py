@@ -59,7 +59,7 @@ def test_a_node_class_with_a_timer_uses_received_messages(start: Start) -> None:
     assert (ros.subscribed, dict(ros.published)) == ({"/light"}, {"/cmd_vel": 2})
 
 
-def test_the_end_of_an_episode_ends_spin_like_an_external_shutdown(start: Start) -> None:
+def test_episode_end_ends_spin(start: Start) -> None:
     ros = start(FOLLOWER)
     ros.close()
     assert ros.namespace["ended"] == ["external", False]
@@ -67,7 +67,7 @@ def test_the_end_of_an_episode_ends_spin_like_an_external_shutdown(start: Start)
     assert not ros.alive
 
 
-def test_spin_once_handles_one_message_and_the_queue_respects_its_depth(start: Start) -> None:
+def test_spin_once_handles_one_message(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -112,7 +112,7 @@ def test_a_late_timer_skips_missed_periods(start: Start) -> None:
     assert ros.namespace["calls"] == [0.1, 0.2, 0.55, 0.6, 0.7, 0.8]
 
 
-def test_an_integer_in_a_float_field_fails_as_in_ros(start: Start) -> None:
+def test_integer_in_a_float_field_fails(start: Start) -> None:
     with pytest.raises(NodeError, match="AssertionError: The 'x' field must be of type 'float'"):
         start("""
             from geometry_msgs.msg import Twist
@@ -121,7 +121,7 @@ def test_an_integer_in_a_float_field_fails_as_in_ros(start: Start) -> None:
         """)
 
 
-def test_a_declared_parameter_keeps_its_type_and_is_checked_by_the_callback(start: Start) -> None:
+def test_declared_parameter_keeps_its_type(start: Start) -> None:
     ros = start(
         """
         import rclpy
@@ -149,7 +149,7 @@ def test_a_declared_parameter_keeps_its_type_and_is_checked_by_the_callback(star
     assert ros.namespace["seen"] == [2.0, "b", [0.0, 1.0], "undeclared", True, False, False, 3.0]
 
 
-def test_an_override_of_another_type_is_refused_as_in_ros(start: Start) -> None:
+def test_override_of_another_type_is_refused(start: Start) -> None:
     with pytest.raises(NodeError, match=r"InvalidParameterTypeException.*'gain'.*expecting type 'DOUBLE'"):
         start(
             """
@@ -232,7 +232,7 @@ def test_coroutine_callbacks_await_futures(start: Start) -> None:
     assert ros.namespace["log"] == ["yes"]
 
 
-def test_a_coroutine_that_awaits_a_response_in_its_own_exclusive_group_deadlocks(start: Start) -> None:
+def test_awaiting_in_an_exclusive_group_deadlocks(start: Start) -> None:
     ros = start("""
         import rclpy
         from std_srvs.srv import Trigger
@@ -275,7 +275,7 @@ def test_a_multi_threaded_executor_continues_while_a_callback_waits(start: Start
     assert ros.namespace["log"] == ["slow", "quick", "quick", "quick", "slow", "quick"]
 
 
-def test_spin_works_in_a_thread_beside_a_rate_in_the_main_program(start: Start) -> None:
+def test_spin_works_beside_a_rate(start: Start) -> None:
     ros = start("""
         import threading
         import rclpy
@@ -412,7 +412,7 @@ def test_time_and_duration_support_arithmetic_and_conversion(start: Start) -> No
     ]  # fmt: skip
 
 
-def test_an_exception_in_a_callback_ends_the_node_and_is_reported(start: Start) -> None:
+def test_callback_exception_ends_the_node(start: Start) -> None:
     ros = start(FOLLOWER.replace("self.error = msg.data - 0.5", "self.error = msg.dat - 0.5"))
     with pytest.raises(
         NodeError, match=r"'/follower' raised AttributeError.*node\.py, line \d+, in on_light"
@@ -420,7 +420,7 @@ def test_an_exception_in_a_callback_ends_the_node_and_is_reported(start: Start) 
         ros.bus.publish("light", Float64(data=1.0))
 
 
-def test_use_before_init_and_double_shutdown_fail_as_in_ros(start: Start) -> None:
+def test_early_use_and_double_shutdown_fail(start: Start) -> None:
     with pytest.raises(NodeError, match="NotInitializedException"):
         start("from rclpy.node import Node; Node('n')")
     with pytest.raises(
@@ -458,7 +458,7 @@ def test_errors_name_missing_apis(start: Start) -> None:
             start(line)
 
 
-def test_the_world_can_publish_the_ros1_class_of_the_same_type(start: Start) -> None:
+def test_world_can_publish_the_ros1_class(start: Start) -> None:
     ros = start("""
         import rclpy
         from sensor_msgs.msg import LaserScan
@@ -494,7 +494,7 @@ def test_logging_uses_python_and_respects_once_and_throttle(
     assert {record.name for record in caplog.records} == {"rclpy.talker"}
 
 
-def test_introspection_and_overrides_of_services_and_topics_have_the_names_of_rclpy(start: Start) -> None:
+def test_introspection_has_the_names_of_rclpy(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.qos_overriding_options import QosCallbackResult, QoSOverridingOptions

@@ -104,7 +104,7 @@ def test_a_declared_type_without_a_value_is_uninitialised() -> None:
     assert node.get_parameter_types(["a", "use_sim_time"]) == [ParameterType.INTEGER, ParameterType.BOOL]
 
 
-def test_an_unknown_parameter_is_an_error_unless_the_node_allows_it() -> None:
+def test_unknown_parameter_needs_permission() -> None:
     node, free = declared(), declared(undeclared=True)
     for call in (
         lambda one: one.get_parameter("x"),
@@ -143,7 +143,7 @@ def test_atomic_change_sets_all_parameters_or_none() -> None:
     assert values(node) == {"a": 2, "b": 1}
 
 
-def test_parameter_callbacks_run_newest_first_before_on_and_after_a_change() -> None:
+def test_newest_parameter_callbacks_run_first() -> None:
     node, trail = declared(("a", 1)), list[Any]()
 
     def noting(name: str, result: Any = None) -> Callable[[list[Parameter]], Any]:
@@ -178,7 +178,7 @@ def test_parameter_callbacks_run_newest_first_before_on_and_after_a_change() -> 
     assert trail == [("pre 1", [4]), ("allow", [4])]
 
 
-def test_a_callback_must_return_a_result_and_may_refuse_a_declaration() -> None:
+def test_parameter_callback_may_refuse_a_declaration() -> None:
     node = declared(("a", 1))
     node.add_on_set_parameters_callback(lambda _: None)
     result = node.set_parameters([Parameter("a", value=2)])[0]
@@ -191,7 +191,7 @@ def test_a_callback_must_return_a_result_and_may_refuse_a_declaration() -> None:
     other.declare_parameter("free")  # there is no value to refuse
 
 
-def test_a_dynamic_parameter_is_removed_by_a_value_that_is_not_set() -> None:
+def test_unset_value_removes_a_dynamic_parameter() -> None:
     node = declared(("a", 1, new_descriptor(dynamic_typing=True)), ("b", 1))
     assert node.set_parameters([Parameter("a")])[0].successful
     assert not node.has_parameter("a")
@@ -209,7 +209,7 @@ def test_parameters_are_listed_by_their_prefix_and_depth() -> None:
     assert node.list_parameters([], 1).names == ["a", "ab", "use_sim_time"]
 
 
-def test_a_new_descriptor_must_fit_the_value_that_it_may_replace() -> None:
+def test_new_descriptor_must_fit_the_value() -> None:
     limits = message_type("rcl_interfaces/msg/IntegerRange")(from_value=0, to_value=4, step=2)
     node = declared(("a", 7))
     with pytest.raises(InvalidParameterValueException):
@@ -238,9 +238,7 @@ def test_all_overrides_are_declared_with_a_dynamic_type() -> None:
         (1, 4, 0, 1, True),
     ],
 )
-def test_integers_lie_on_a_step_of_their_range_or_at_its_end(
-    value: int, low: int, high: int, step: int, allowed: bool
-) -> None:
+def test_integers_lie_on_range_steps(value: int, low: int, high: int, step: int, allowed: bool) -> None:
     limits = message_type("rcl_interfaces/msg/IntegerRange")(from_value=low, to_value=high, step=step)
     described = new_descriptor(integer_range=[limits], type=int(ParameterType.INTEGER))
     assert (objection(Parameter("a", value=value), described, declaring=False) == "") is allowed
@@ -322,7 +320,7 @@ def test_each_spin_once_runs_one_callback(network: Network) -> None:
     assert spinning(network, program)[0] == ["a", "|", "b", 0, 3 * SECOND // 2, 3 * SECOND // 2]
 
 
-def test_timers_come_first_and_wake_the_executor_when_they_are_due(network: Network) -> None:
+def test_timers_wake_the_executor(network: Network) -> None:
     clock = network.scheduler
 
     def program(executor: Executor, trail: list[Any]) -> None:
@@ -337,7 +335,7 @@ def test_timers_come_first_and_wake_the_executor_when_they_are_due(network: Netw
     assert spinning(network, program)[0] == ["now", 0, "a", 0, "late", 5]
 
 
-def test_a_spin_ends_with_its_future_or_at_its_time_limit(network: Network) -> None:
+def test_spin_ends_with_its_future_or_limit(network: Network) -> None:
     clock = network.scheduler
 
     def program(executor: Executor, trail: list[Any]) -> None:
@@ -412,7 +410,7 @@ def test_the_end_of_an_episode_ends_the_spin(network: Network) -> None:
     assert trail == ["raised", "returned"]
 
 
-def test_a_spin_ends_with_the_shutdown_of_its_context_or_executor(network: Network) -> None:
+def test_spin_ends_with_its_context(network: Network) -> None:
     def program(executor: Executor, trail: list[Any]) -> None:
         network.scheduler.at(5, executor.shutdown)
         executor.spin()
@@ -425,7 +423,7 @@ def test_a_spin_ends_with_the_shutdown_of_its_context_or_executor(network: Netwo
     assert spinning(network, program)[0] == [5, 9]
 
 
-def test_callbacks_of_a_multi_threaded_executor_overlap_if_their_groups_allow_it(
+def test_multi_threaded_callbacks_overlap_if_allowed(
     network: Network,
 ) -> None:
     clock = network.scheduler
@@ -485,7 +483,7 @@ def test_a_coroutine_occupies_its_group_until_it_returns(network: Network) -> No
     assert spinning(network, program)[0] == ["a", "|", "end of a", "b"]
 
 
-def test_a_context_is_initialised_once_and_calls_back_at_its_shutdown(network: Network) -> None:
+def test_context_is_initialised_once(network: Network) -> None:
     trail: list[Any] = []
 
     def main() -> None:

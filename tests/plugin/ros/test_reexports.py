@@ -20,7 +20,7 @@ KINDS = {
 
 
 @pytest.mark.parametrize("module", sorted(REEXPORTED))
-def test_every_reexported_name_exists_and_is_not_defined_by_the_stand_in(module: str, start: Start) -> None:
+def test_every_reexported_name_exists(module: str, start: Start) -> None:
     contents = vars(import_module("pytest_tarl.ros." + STANDINS[module]))
     names = [one for names in REEXPORTED[module].values() for one in names.split()]
     plain = [one.partition("=")[0] for one in names]
@@ -33,7 +33,7 @@ def test_every_reexported_name_exists_and_is_not_defined_by_the_stand_in(module:
             assert getattr(sys.modules[module], own) is getattr(sys.modules[home], original or own)
 
 
-def test_nodes_can_import_names_from_the_modules_that_an_editor_suggests(start: Start) -> None:
+def test_suggested_modules_can_be_imported(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.node import Node, ParameterDescriptor, QoSProfile, ReentrantCallbackGroup

@@ -28,7 +28,7 @@ def store() -> Any:
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_messages_are_serialised_to_the_same_bytes_as_in_ros(name: str, store: Any) -> None:
+def test_messages_have_the_bytes_of_ros(name: str, store: Any) -> None:
     message = filled(message_type(name), 3)
     data = serialize(message)
     other = name.replace("/", "/msg/")
@@ -53,7 +53,7 @@ def test_messages_serialise_and_deserialise() -> None:
     assert "MSG: geometry_msgs/Vector3\nfloat64 x\n" in full_text(kind)
 
 
-def test_a_bag_written_by_one_node_is_read_by_another_node(start: Start, tmp_path: Path) -> None:
+def test_bag_of_one_node_is_read_by_another(start: Start, tmp_path: Path) -> None:
     path = str(tmp_path / "a.bag")
     start(f"""
         import rosbag

@@ -25,7 +25,7 @@ Polygon: Any = message_type("geometry_msgs/msg/Polygon")
 Floats: Any = message_type("std_msgs/msg/Float64MultiArray")
 
 
-def test_a_node_subscribes_to_a_type_that_it_knows_by_name_only(start: Start) -> None:
+def test_node_subscribes_to_a_type_by_name(start: Start) -> None:
     ros = start(
         """
         import rclpy
@@ -54,7 +54,7 @@ def test_a_node_subscribes_to_a_type_that_it_knows_by_name_only(start: Start) ->
     assert (message.linear.x, message.angular.z) == (-0.5, 0.25)
 
 
-def test_classes_of_messages_services_and_actions_are_found_by_name() -> None:
+def test_interface_classes_are_found_by_name() -> None:
     assert get_message("std_msgs/msg/String") is String
     assert get_interface("std_msgs/String") is String
     assert get_service("std_srvs/srv/SetBool") is message_type("std_srvs/srv/SetBool")
@@ -64,12 +64,12 @@ def test_classes_of_messages_services_and_actions_are_found_by_name() -> None:
 @pytest.mark.parametrize(
     "name", ["String", "/msg/String", "std_msgs/msg/", "std_msgs/text/String", "a/msg/b/C"]
 )
-def test_a_type_name_of_another_form_is_a_value_error(name: str) -> None:
+def test_malformed_type_name_is_a_value_error(name: str) -> None:
     with pytest.raises(ValueError, match="Invalid name"):
         get_message(name)
 
 
-def test_a_type_of_another_kind_or_an_unknown_one_is_an_error() -> None:
+def test_wrong_or_unknown_type_is_an_error() -> None:
     with pytest.raises(ValueError, match="full name of a message, got 'std_srvs/srv/SetBool'"):
         get_message("std_srvs/srv/SetBool")
     with pytest.raises(ValueError, match="full name of a service"):
@@ -140,7 +140,7 @@ def test_a_message_is_filled_from_dictionaries_lists_and_messages() -> None:
     assert list(floats.data) == [1.0, 2.0]
 
 
-def test_a_message_converted_to_a_dictionary_and_back_is_unchanged() -> None:
+def test_message_survives_conversion_to_a_dictionary() -> None:
     polygon = Polygon()
     set_message_fields(polygon, {"points": [{"x": 1.0, "y": 2.0, "z": 0.5}, {"z": -1.0}]})
     twin = Polygon()

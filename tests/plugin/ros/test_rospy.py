@@ -67,7 +67,7 @@ def test_topics_are_counted_under_absolute_names(start: Start) -> None:
     assert ros.alive
 
 
-def test_a_node_class_with_a_timer_keeps_its_state_between_callbacks(start: Start) -> None:
+def test_node_class_keeps_state_between_callbacks(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -117,7 +117,7 @@ def test_subscribers_do_not_see_later_changes_by_the_publisher(start: Start) -> 
     assert ros.namespace["got"][0].linear.x == 0.0
 
 
-def test_publish_accepts_a_message_or_its_fields_by_position_or_keyword(start: Start) -> None:
+def test_publish_accepts_a_message_or_fields(start: Start) -> None:
     ros = Ros()
     said = heard(ros, "/x")
     with ros.installed():
@@ -207,7 +207,7 @@ def test_sleep_rate_and_time_follow_the_virtual_clock(start: Start) -> None:
     assert ros.namespace["seen"] == [1.0, 1.5, 2.0, 1.25]
 
 
-def test_wait_for_message_returns_the_next_message_or_times_out(start: Start) -> None:
+def test_wait_for_message_returns_or_times_out(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -391,7 +391,7 @@ def test_rospy_outside_of_a_node_is_an_error() -> None:
             rospy.sleep(1)
 
 
-def test_threads_and_locks_of_a_node_run_on_the_virtual_clock(start: Start) -> None:
+def test_threads_run_on_the_virtual_clock(start: Start) -> None:
     ros = start("""
         import queue, threading, time
         import rospy
@@ -515,7 +515,7 @@ def test_messages_name_their_publisher_in_the_connection_header(start: Start) ->
     ]
 
 
-def test_a_subscriber_to_any_type_learns_the_type_and_reads_the_bytes(start: Start) -> None:
+def test_any_type_subscriber_learns_the_type(start: Start) -> None:
     ros = start("""
         import roslib.message, rospy
         heard = []

@@ -11,7 +11,7 @@ from tests.plugin.ros.conftest import Start
 String = message_type("std_msgs/String")
 
 
-def test_the_end_of_an_episode_runs_hooks_and_interrupts_waits(start: Start) -> None:
+def test_episode_end_runs_hooks(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -104,7 +104,7 @@ def test_exception_report_names_the_node_and_the_line(start: Start) -> None:
     assert ros.now == 1.0
 
 
-def test_an_exception_in_a_callback_is_raised_where_the_test_publishes(start: Start) -> None:
+def test_callback_exception_is_raised_at_the_publish(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -122,7 +122,7 @@ def test_a_nonzero_exit_status_of_a_node_is_reported(start: Start) -> None:
         start("import sys; sys.exit(3)")
 
 
-def test_a_node_that_never_waits_is_stopped_and_its_line_is_reported(start: Start) -> None:
+def test_never_waiting_node_is_stopped_with_its_line(start: Start) -> None:
     with pytest.raises(NodeError, match=r"'/busy' never waits.*node\.py, line \d+, in look") as caught:
         start(
             """

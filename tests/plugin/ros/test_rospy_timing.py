@@ -66,13 +66,13 @@ def test_timer_reports_planned_and_actual_times(start: Start) -> None:
     ]
 
 
-def test_a_timer_that_is_more_than_a_period_late_starts_anew(start: Start) -> None:
+def test_late_timer_starts_anew(start: Start) -> None:
     code = f"spent = [3.5]\n{EVENTS}rospy.Timer(rospy.Duration(1.0), told)\nrospy.spin()"
     times = [(planned, real) for _, _, planned, real, _ in run(start, code, 6.6)]
     assert times == [(1.0, 1.0), (4.5, 4.5), (5.5, 5.5), (6.5, 6.5)]
 
 
-def test_a_timer_fires_once_or_until_it_is_shut_down(start: Start) -> None:
+def test_timer_fires_once_or_until_shutdown(start: Start) -> None:
     log = run(start, """
 once = rospy.Timer(rospy.Duration(1.0), lambda event: log.append("once"), oneshot=True)
 often = rospy.Timer(rospy.Duration(1.0), lambda event: log.append("often"))
@@ -86,7 +86,7 @@ log.append("end")
     assert log == [(True, True), "once", "often", "often", "often", (False, False), "end"]
 
 
-def test_joining_a_timer_waits_for_its_end_or_the_time_limit(start: Start) -> None:
+def test_joining_a_timer_waits_for_its_end(start: Start) -> None:
     log = run(start, """
 timer = rospy.Timer(rospy.Duration(2.0), lambda event: None)
 timer.join(3.0)
@@ -111,7 +111,7 @@ except ValueError as error:
     assert log == [f"a timer needs a period above zero, not {period} s"]
 
 
-def test_sleeps_accept_seconds_or_durations_and_negative_sleeps_return_immediately(start: Start) -> None:
+def test_negative_sleeps_return_immediately(start: Start) -> None:
     log = run(start, """
 for span in (0.5, rospy.Duration(0.25), 0, -1.0, rospy.Duration(-1), 2):
     rospy.sleep(span)

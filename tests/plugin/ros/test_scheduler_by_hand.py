@@ -51,9 +51,7 @@ def test_tasks_wake_in_order_of_time(clock: Scheduler, program: Program) -> None
     assert trail == [("b", 3), ("d", 3), ("a", 9), ("c", 9)]
 
 
-def test_an_instant_that_has_passed_wakes_a_task_without_moving_the_clock(
-    clock: Scheduler, program: Program
-) -> None:
+def test_past_instant_wakes_a_task_at_once(clock: Scheduler, program: Program) -> None:
     clock.advance(10)
     trail: list[int] = []
 
@@ -67,7 +65,7 @@ def test_an_instant_that_has_passed_wakes_a_task_without_moving_the_clock(
     assert trail == [10]
 
 
-def test_a_woken_task_resumes_once_and_its_wait_returns_true(clock: Scheduler, program: Program) -> None:
+def test_woken_task_resumes_once(clock: Scheduler, program: Program) -> None:
     trail: list[Any] = []
 
     def task() -> None:
@@ -89,7 +87,7 @@ def test_a_woken_task_resumes_once_and_its_wait_returns_true(clock: Scheduler, p
     clock.settle()
 
 
-def test_a_task_that_starts_another_runs_on_until_it_waits(clock: Scheduler, program: Program) -> None:
+def test_starting_task_runs_until_it_waits(clock: Scheduler, program: Program) -> None:
     trail: list[str] = []
 
     def inner() -> None:
@@ -134,7 +132,7 @@ def test_alarms_come_before_the_tasks_of_their_instant(clock: Scheduler, program
     assert trail[-1] == ("late", 8)
 
 
-def test_an_alarm_that_is_set_by_an_alarm_is_also_in_order(clock: Scheduler) -> None:
+def test_nested_alarms_ring_in_order(clock: Scheduler) -> None:
     trail: list[int] = []
     clock.at(2, lambda: clock.at(3, lambda: trail.append(clock.time)))
     clock.at(4, lambda: trail.append(clock.time))
@@ -204,7 +202,7 @@ def test_jobs_run_outside_tasks_once_the_running_task_waits(clock: Scheduler, pr
     assert trail == ["task", None]
 
 
-def test_the_exception_of_a_task_is_passed_to_its_program(clock: Scheduler, program: Program) -> None:
+def test_task_exception_reaches_its_program(clock: Scheduler, program: Program) -> None:
     def task() -> None:
         raise ValueError("boom")
 
@@ -269,7 +267,7 @@ def test_the_program_is_entered_before_each_of_its_tasks(clock: Scheduler, progr
     assert entered == [program, program]
 
 
-def test_the_error_for_a_task_that_never_waits_names_its_program(clock: Scheduler, program: Program) -> None:
+def test_error_names_the_program_that_never_waits(clock: Scheduler, program: Program) -> None:
     assert isinstance(clock.spinning(), StuckNodeError)
     told: list[NodeError] = []
     clock.spawn(program, lambda: told.append(clock.spinning()))
@@ -349,7 +347,7 @@ def test_seconds_are_rounded_to_whole_nanoseconds() -> None:
 # locks
 
 
-def test_a_lock_is_given_to_the_task_that_has_waited_longest(clock: Scheduler, program: Program) -> None:
+def test_longest_waiting_task_gets_the_lock(clock: Scheduler, program: Program) -> None:
     lock, trail = Lock(clock), list[Any]()
 
     def task(name: str, hold: int) -> None:

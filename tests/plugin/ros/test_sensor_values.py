@@ -38,7 +38,7 @@ def cloud(kind: str, *, dense: bool = False, bigendian: bool = False) -> Any:
 
 @pytest.mark.parametrize("kind", ["", "msg/"])
 @pytest.mark.parametrize("bigendian", [False, True])
-def test_points_are_read_at_their_offsets_and_without_the_padding_of_rows(kind: str, bigendian: bool) -> None:
+def test_points_are_read_without_row_padding(kind: str, bigendian: bool) -> None:
     points = list(point_cloud2.read_points(cloud(kind, bigendian=bigendian), ["x", "flag"]))
     assert [int(flag) for _, flag in points] == [1, 2, 3, 4, 5, 6]
     assert [float(x) for x, _ in points] == pytest.approx([0, 1, 2, 3, np.nan, 5], nan_ok=True)
@@ -46,7 +46,7 @@ def test_points_are_read_at_their_offsets_and_without_the_padding_of_rows(kind: 
     assert (every[3].x, every[3].flag, list(every[3].pair), every[3].y) == (3, 4, [0, 7], 30)
 
 
-def test_in_ros1_pixels_select_points_and_an_empty_list_selects_all() -> None:
+def test_ros1_pixels_select_points() -> None:
     made = cloud("")
     assert [x for (x,) in point_cloud2.read_points(made, ["x"], uvs=[(2, 0), (0, 1)])] == [2, 3]
     assert [x for (x,) in point_cloud2.read_points(made, ["x"], uvs=np.array([(2, 1)]))] == [5]
@@ -54,14 +54,14 @@ def test_in_ros1_pixels_select_points_and_an_empty_list_selects_all() -> None:
     assert [x for (x,) in point_cloud2.read_points(made, ["x"], skip_nans=True, uvs=[(1, 1), (0, 1)])] == [3]
 
 
-def test_in_ros2_indices_select_points_after_points_with_nan_are_removed() -> None:
+def test_ros2_indices_ignore_nan_points() -> None:
     made = cloud("msg/")
     assert point_cloud2.read_points(made, ["x"], uvs=[2, 0])["x"].tolist() == [2, 0]
     assert point_cloud2.read_points(made, ["x"], skip_nans=True, uvs=np.array([4]))["x"].tolist() == [5]
     assert len(point_cloud2.read_points(made, uvs=[])) == 0
 
 
-def test_points_with_nan_in_a_requested_field_are_left_out() -> None:
+def test_points_with_requested_nan_are_left_out() -> None:
     def flags(made: Any, names: list[str]) -> list[int]:
         return [int(flag) for *_, flag in point_cloud2.read_points(made, [*names, "flag"], skip_nans=True)]
 
@@ -118,7 +118,7 @@ def test_colours_are_reordered_weighed_and_scaled(wanted: str, pixel: Any) -> No
     assert CvBridge().imgmsg_to_cv2(picture("rgba8", RGBA), wanted)[0, 0].tolist() == pixel
 
 
-def test_grey_images_become_opaque_colours_and_lose_depth_by_rounding() -> None:
+def test_grey_images_become_opaque_colours() -> None:
     grey = np.array([[0, 257, 385, 386, 65535]], dtype=np.uint16)
     bridge = CvBridge()
     assert bridge.imgmsg_to_cv2(picture("mono16", grey), "mono8").tolist() == [[0, 1, 1, 2, 255]]

@@ -39,7 +39,7 @@ def run(start: Start, code: str, *, seconds: float = 5.0, ros: Any = None) -> di
     return names
 
 
-def test_outcomes_select_the_next_state_and_userdata_is_passed_on(start: Start) -> None:
+def test_outcomes_select_the_next_state(start: Start) -> None:
     names = run(start, """
 class Count(smach.State):
     def __init__(self):

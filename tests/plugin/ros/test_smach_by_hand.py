@@ -131,9 +131,7 @@ def test_state_without_a_server_sends_no_goal(
 @pytest.mark.parametrize(
     ("chosen", "outcome"), [("odd", "odd"), ("unknown", "succeeded"), (None, "succeeded")]
 )
-def test_a_callback_may_choose_one_of_the_outcomes_of_the_state(
-    chosen: str | None, outcome: str, clock: list[float]
-) -> None:
+def test_callback_may_choose_the_outcome(chosen: str | None, outcome: str, clock: list[float]) -> None:
     heard: list[Any] = []
 
     def callback(userdata: Any, status: int, result: Any, *given: Any, **named: Any) -> str | None:
@@ -249,7 +247,7 @@ def test_the_outcome_of_a_container_ends_the_goal(outcome: str, ended: str, text
     assert [(one, words) for one, _, words in server.ended] == [(ended, text)]
 
 
-def test_slots_of_goal_result_and_feedback_are_mapped_to_userdata() -> None:
+def test_goal_slots_are_mapped_to_userdata() -> None:
     server, container = Server(), Container("ok", sum=7, rest=3, at=4)
     made = served(
         container,
@@ -266,7 +264,7 @@ def test_slots_of_goal_result_and_feedback_are_mapped_to_userdata() -> None:
     assert server.feedback == [{"step": 4}] * 2
 
 
-def test_by_default_only_mapped_slots_are_passed_and_no_feedback_is_sent() -> None:
+def test_only_mapped_slots_are_passed_by_default() -> None:
     server, container = Server(active=False), Container("ok", sum=7, rest=3)
     made = served(container, server, goal_slots_map={"order": "wanted"}, result_slots_map={"total": "sum"})
     made.execute_cb(slots(order=5, extra=6))

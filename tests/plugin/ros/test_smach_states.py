@@ -74,9 +74,7 @@ def acted(start: Start, code: str, status: int | None = 3, seconds: float = 1.0)
         ('_, outcome = run()', ""),
     ],
 )  # fmt: skip
-def test_a_goal_comes_from_an_argument_from_userdata_or_from_a_function(
-    start: Start, code: str, frame: str
-) -> None:
+def test_goal_comes_from_argument_userdata_or_function(start: Start, code: str, frame: str) -> None:
     names, mover = acted(start, code)
     assert (mover.frames(), names["outcome"]) == ([frame], "succeeded")
 
@@ -84,9 +82,7 @@ def test_a_goal_comes_from_an_argument_from_userdata_or_from_a_function(
 @pytest.mark.parametrize(
     ("status", "outcome"), [(3, "succeeded"), (4, "aborted"), (2, "aborted"), (5, "aborted")]
 )
-def test_the_status_of_the_goal_determines_the_outcome_of_the_state(
-    start: Start, status: int, outcome: str
-) -> None:
+def test_goal_status_determines_the_outcome(start: Start, status: int, outcome: str) -> None:
     names, mover = acted(start, "_, outcome = run()", status)
     assert (names["outcome"], mover.cancelled) == (outcome, [])
 
@@ -110,7 +106,7 @@ def test_results_are_stored_in_userdata(start: Start) -> None:
     assert type(names["userdata"].arrival).__name__ == "MoveBaseResult"
 
 
-def test_keys_of_slots_and_callbacks_are_keys_of_the_state(start: Start) -> None:
+def test_slot_keys_are_state_keys(start: Start) -> None:
     names = start(
         HEAD
         + MOVE
@@ -142,7 +138,7 @@ def test_a_request_to_end_cancels_the_goal(start: Start) -> None:
     assert not names["state"].preempt_requested()
 
 
-def test_a_goal_that_succeeds_after_a_request_to_end_has_succeeded(start: Start) -> None:
+def test_late_success_is_a_success(start: Start) -> None:
     names, _ = acted(start, "preempt = True\nstate, outcome = run()", status=3, seconds=3.0)
     assert names["outcome"] == "succeeded"
 
@@ -177,7 +173,7 @@ took = rospy.get_time() - began
     assert 3.0 < names["took"] < 3.5
 
 
-def test_an_action_without_a_server_is_aborted_after_its_limit(start: Start) -> None:
+def test_action_without_a_server_is_aborted(start: Start) -> None:
     ros = start(HEAD + MOVE + """
 _, outcome = run(server_wait_timeout=rospy.Duration(2.0))
 ended = rospy.get_time()
@@ -213,7 +209,7 @@ from std_srvs.srv import SetBoolResponse
         ("request_key='order', response_cb=lambda userdata, response: None", "succeeded"),
     ],
 )  # fmt: skip
-def test_a_service_gets_its_request_and_may_choose_the_outcome(start: Start, code: str, outcome: str) -> None:
+def test_service_callback_may_choose_the_outcome(start: Start, code: str, outcome: str) -> None:
     ros = start("")
     start("import rospy\nfrom std_srvs.srv import SetBool\n" + SERVED + """
 rospy.init_node("lamp")
@@ -253,9 +249,7 @@ smach_ros.ServiceState("light", SetBool, response_key="whole", response_slots=["
         ("max_checks=6", "true", 7),
     ],
 )
-def test_a_condition_is_checked_until_it_holds_or_a_limit_is_reached(
-    start: Start, options: str, outcome: str, calls: int
-) -> None:
+def test_condition_is_checked_up_to_a_limit(start: Start, options: str, outcome: str, calls: int) -> None:
     ros = start(HEAD + f"""
 calls = []
 def check(userdata):

@@ -142,7 +142,7 @@ def test_error_without_a_cause_is_reported_by_its_message() -> None:
     assert "The test was at" not in other
 
 
-def test_a_traceback_omits_the_first_frames_if_they_are_in_the_package() -> None:
+def test_traceback_omits_first_package_frames() -> None:
     def of(*files: str) -> Any:
         frame: Any = None
         for file in reversed(files):
@@ -190,7 +190,7 @@ class Lazy(topic_tools.LazyTransport):
         self.trail.append("unsubscribe")
 
 
-def test_a_lazy_node_subscribes_once_and_unsubscribes_when_its_last_peer_leaves(
+def test_lazy_node_unsubscribes_with_its_last_peer(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(topic_tools, "get_param", lambda name, default: default)
@@ -229,7 +229,7 @@ def found(ros: Any) -> list[Any]:
     return ros.namespace["found"]  # type: ignore[no-any-return]
 
 
-def test_a_client_waits_for_a_service_and_calls_it_with_a_limit(start: Start) -> None:
+def test_client_calls_a_service_with_a_limit(start: Start) -> None:
     ros = start(
         PAIR
         + """
@@ -252,7 +252,7 @@ def test_a_client_waits_for_a_service_and_calls_it_with_a_limit(start: Start) ->
     assert found(ros) == [False, False, 500_000_000, None, 750_000_000, False, True, True]
 
 
-def test_a_service_may_answer_from_a_coroutine_and_be_destroyed(start: Start) -> None:
+def test_service_may_answer_from_a_coroutine(start: Start) -> None:
     ros = start(
         PAIR
         + """

@@ -55,7 +55,7 @@ def trajectory() -> tuple[list[tuple[float, str]], list[tuple[str, float, float]
     return published, trail
 
 
-def test_two_runs_of_a_node_with_threads_have_bitwise_equal_trajectories() -> None:
+def test_threaded_runs_are_bitwise_equal() -> None:
     first, second = trajectory(), trajectory()
     assert len(first[0]) > 15
     assert {name for name, _, _ in first[1]} == {"a", "b", "c"}

@@ -50,7 +50,7 @@ def test_moving_axes_equal_fixed_axes_in_the_opposite_order() -> None:
 
 
 @given(angles, angles)
-def test_the_function_slerp_at_one_half_rotates_by_half_the_angle(start: float, end: float) -> None:
+def test_slerp_at_one_half_halves_the_angle(start: float, end: float) -> None:
     turns = [tuple(transformations.quaternion_about_axis(a, (0, 0, 1)).tolist()) for a in (start, end)]
     half = slerp(turns[0], turns[1], 0.5)
     assert math.isclose(sum(a * b for a, b in zip(half, turns[0], strict=True)),
@@ -106,7 +106,7 @@ TF2_NODE = """
 """
 
 
-def test_a_buffer_interpolates_along_the_tree_and_names_missing_frames(start: Start) -> None:
+def test_buffer_interpolates_and_names_missing_frames(start: Start) -> None:
     ros = start(TF2_NODE)
     message = message_type("tf2_msgs/msg/TFMessage")
     ros.step(1.0)

@@ -69,7 +69,7 @@ READER = """
 """
 
 
-def test_a_publisher_learns_when_a_node_is_connected_and_disconnected(start: Start) -> None:
+def test_publisher_notices_connections(start: Start) -> None:
     for end, last in (("rospy.spin()", []), ("", [("left", "/out", 0)])):
         ros = start(LISTENER)
         log = ros.namespace["log"]

@@ -68,7 +68,7 @@ def test_links_and_joints_form_a_tree(arm: Any) -> None:
     assert arm.link_map["tool"] is arm.links[2]
 
 
-def test_chains_have_links_and_joints_from_the_root_to_the_tip(arm: Any) -> None:
+def test_chains_run_from_root_to_tip(arm: Any) -> None:
     whole = ["base", "shoulder", "upper", "wrist", "tool", "grip", "finger"]
     assert arm.get_chain("base", "finger") == whole
     assert arm.get_chain("base", "finger", links=False) == ["shoulder", "wrist", "grip"]
@@ -78,7 +78,7 @@ def test_chains_have_links_and_joints_from_the_root_to_the_tip(arm: Any) -> None
         arm.get_chain("finger", "base")
 
 
-def test_a_joint_has_its_limits_and_missing_elements_are_none(arm: Any) -> None:
+def test_joint_has_limits_and_optional_elements(arm: Any) -> None:
     shoulder, wrist, grip = arm.joints
     assert (shoulder.type, shoulder.joint_type, shoulder.parent, shoulder.child) == (
         "revolute",
@@ -115,7 +115,7 @@ def test_a_link_has_shapes_and_inertia(arm: Any) -> None:
     assert arm.materials[0].color.rgba == [0.5, 0.5, 0.5, 1.0]
 
 
-def test_a_robot_can_be_built_and_read_from_a_file(tmp_path: Path) -> None:
+def test_robot_can_be_read_from_a_file(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(f'<?xml version="1.0" encoding="utf-8"?>\n{ARM}', encoding="utf-8")
     assert URDF.from_xml_file(str(tmp_path / "arm.urdf")) == URDF.from_xml_string(ARM)
     built = Robot(name="two")
@@ -150,7 +150,7 @@ def test_a_robot_can_be_built_and_read_from_a_file(tmp_path: Path) -> None:
         ("<launch/>", "The root element is not a robot"),
     ],
 )
-def test_a_description_of_a_wrong_form_is_a_parse_error(text: str, message: str) -> None:
+def test_malformed_description_is_a_parse_error(text: str, message: str) -> None:
     with pytest.raises(ParseError, match=message):
         URDF.from_xml_string(text)
 
@@ -201,7 +201,7 @@ def test_a_node_reads_the_description_from_a_parameter(start: Start) -> None:
 
 
 @bare
-def test_modules_of_the_stand_ins_can_be_imported_from_their_packages(start: Start) -> None:
+def test_stand_in_modules_can_be_imported(start: Start) -> None:
     ros = start(
         """
         from urdf_parser_py import urdf

@@ -98,7 +98,7 @@ def test_in_ros_2_names_follow_the_rules_of_rcl(name: str) -> None:
         assert expected in (problem or ("", 0))[0]
 
 
-def test_the_index_in_a_problem_points_at_the_wrong_character() -> None:
+def test_problem_index_points_at_the_wrong_character() -> None:
     found = [ros_names.topic_problem(name) for name in ("a b", "a/1", "ab{c", "ab/", "a/~b", "{a-}")]
     assert [problem[1] for problem in found if problem] == [1, 2, 2, 2, 2, 2]
     found = [ros_names.full_topic_problem(name) for name in ("/a//b", "/a/1", "/a b", "/ab/")]
@@ -109,9 +109,7 @@ def test_the_index_in_a_problem_points_at_the_wrong_character() -> None:
     ("check", "longest"),
     [(ros_names.full_topic_problem, 247), (ros_names.namespace_problem, 245), (ros_names.node_problem, 255)],
 )
-def test_the_maximum_length_of_a_name_is_as_in_ros_2(
-    check: Callable[[str], Problem | None], longest: int
-) -> None:
+def test_maximum_name_length_is_as_in_ros2(check: Callable[[str], Problem | None], longest: int) -> None:
     name = "/" + "a" * (longest - 1) if check is not ros_names.node_problem else "a" * longest
     assert check(name) is None
     assert "should not exceed" in (check(name + "a") or ("", 0))[0]
@@ -175,7 +173,7 @@ def test_rospy_warns_about_names_of_nodes_and_parameters(start: Start) -> None:
         start("import rospy; rospy.init_node('n'); rospy.set_param('a b', 1)")
 
 
-def test_the_world_reaches_a_node_whose_topic_has_a_hyphen(start: Start) -> None:
+def test_topic_with_a_hyphen_is_reached(start: Start) -> None:
     ros = start("pass")
     messages = heard(ros, "/cam-1")
     with pytest.warns(UserWarning, match="not a legal"):
@@ -196,7 +194,7 @@ def test_the_world_reaches_a_node_whose_topic_has_a_hyphen(start: Start) -> None
     ["a:=b c", "a:=b/", "a:=1", "a:=", "=b", "a:=~x", "a:={ns}/b", "a:=b//c", "a:=b:=c", "a:b", "__node:=a b",
      "__node:=1", "__ns:=a", "__ns:=/a b"],
 )  # fmt: skip
-def test_a_remapping_to_an_invalid_name_is_refused_as_by_rcl(rule: str) -> None:
+def test_remapping_to_an_invalid_name_is_refused(rule: str) -> None:
     with pytest.raises(RuntimeError, match="Couldn't parse remap rule: '-r "):
         parse_ros2(["--ros-args", "-r", rule])
 
@@ -214,7 +212,7 @@ def test_a_remapping_of_a_test_is_checked() -> None:
         Ros(remappings={"a": "b c"})
 
 
-def test_a_name_is_legal_if_an_installed_rosgraph_accepts_it(start: Start) -> None:
+def test_name_is_legal_if_rosgraph_accepts_it(start: Start) -> None:
     """Compare with the module of an installed ROS 1, if there is one."""
     python = shutil.which("python3", path="/usr/bin")
     names = ["", "a", "/a", "~a", "~/a", "1a", "/1", "_a", "/_a", "a b", "a-b", "a//b", "a/", "a/~b", "a:b"]

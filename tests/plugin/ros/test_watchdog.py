@@ -96,7 +96,7 @@ print(seen)
     assert run.stdout.split("\n") == ["True", "['called']", ""], run.stderr
 
 
-def test_a_watchdog_that_is_disarmed_after_it_fired_raises_no_exception(
+def test_disarmed_watchdog_raises_no_exception(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # the exception is not raised before the watchdog is disarmed

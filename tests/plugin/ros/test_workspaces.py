@@ -107,7 +107,7 @@ def test_test_can_use_message_types_of_its_repository(
 
 
 @pytest.mark.parametrize("test", [".", "tests"])
-def test_definitions_in_or_beside_the_folder_of_the_test_need_no_repository(
+def test_nearby_definitions_need_no_repository(
     test: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_SEARCHED", [])
@@ -157,7 +157,7 @@ def test_the_error_names_a_configuration_without_a_file(packages: Path, start: S
         start("import rospy\nfrom arm_base.cfg import LegConfig\n")
 
 
-def test_a_node_in_an_ignored_package_can_import_its_messages(
+def test_node_in_an_ignored_package_imports_its_messages(
     packages: Path, start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_KEPT", set())
@@ -169,7 +169,7 @@ def test_a_node_in_an_ignored_package_can_import_its_messages(
     assert start("import rospy\nfrom arm_base.msg import Reading\n").namespace["Reading"](1.0).value == 1.0
 
 
-def test_a_module_that_no_package_installs_is_imported_with_a_note(packages: Path, start: Start) -> None:
+def test_uninstalled_module_is_imported_with_a_note(packages: Path, start: Start) -> None:
     ros = start("import smoothing\nfound = smoothing.WEIGHT\n")
     assert ros.namespace["found"] == 0.25
     (note,) = ros.notes
@@ -250,9 +250,7 @@ def started(start: Start, folder: Path, source: str, given: Given, **parameters:
     return ros.namespace  # type: ignore[attr-defined,no-any-return]
 
 
-def test_parameters_come_from_the_launch_file_unless_the_test_states_them(
-    launches: Path, start: Start
-) -> None:
+def test_launch_parameters_yield_to_the_test(launches: Path, start: Start) -> None:
     found = given(launches / "node.py")
     assert found.note == "parameters of other_name come from one.launch (arm.yaml)."
     namespace = started(start, launches, NODE1, found, **{"kp": 7, "~limits/low": 0})
@@ -282,7 +280,7 @@ def test_a_node_gets_the_parameters_of_its_enclosing_namespaces(launches: Path) 
     assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
 
 
-def test_parameters_that_a_group_names_by_the_node_are_private_to_it(launches: Path, start: Start) -> None:
+def test_group_parameters_belong_to_their_node(launches: Path, start: Start) -> None:
     text = """
         <launch>
           <arg name="mode"/>
@@ -326,7 +324,7 @@ def test_conflicting_launch_files_set_only_equal_parameters(
         given(launches / "node.py", launches / "launch/three.launch")
 
 
-def test_a_node_started_later_gets_the_parameters_of_its_own_start(start: Start) -> None:
+def test_later_node_gets_its_own_parameters(start: Start) -> None:
     ros = start("import rospy\nrospy.init_node('a')\nrospy.set_param('~x', 1)\n")
     ros.give({"gain": 2})
     start("import rospy\nrospy.init_node('b')\nfound = rospy.get_param('~gain')\n", ros=ros)

@@ -90,7 +90,7 @@ def test_ros1_service_refuses_a_request_by_returning_none(start: Start) -> None:
     assert "service handler returned None" in ros.namespace["said"]
 
 
-def test_none_is_refused_if_the_service_has_a_type_of_ros_2(start: Start) -> None:
+def test_ros2_service_refuses_none(start: Start) -> None:
     ros = start("pass")
     ros.bus.serve("dock", TRIGGER, lambda _: None)
     with pytest.raises(RecordingError, match=r"handler of /dock must be of type .*, not None"):
@@ -110,7 +110,7 @@ def test_a_request_of_another_type_is_refused(start: Start, node: str) -> None:
 
 
 @pytest.mark.parametrize("node", CLIENTS)
-def test_a_service_of_another_type_is_reported_with_both_types(start: Start, node: str) -> None:
+def test_wrong_service_type_names_both_types(start: Start, node: str) -> None:
     ros = start("pass")
     ros.bus.serve("dock", SWITCH, lambda _: SWITCH.Response(success=True, message="on"))
     with pytest.raises(
@@ -175,7 +175,7 @@ rospy.spin()
 
 
 @pytest.mark.parametrize("reason", REFUSING)
-def test_a_world_gets_a_whole_sentence_if_the_node_refuses_its_request(start: Start, reason: str) -> None:
+def test_world_gets_a_sentence_for_a_refused_request(start: Start, reason: str) -> None:
     handler, said = REFUSING[reason]
     ros = start(REFUSED.format(handler))
     reply = ros.bus.call("dock", OLD_TRIGGER._request_class())
@@ -185,7 +185,7 @@ def test_a_world_gets_a_whole_sentence_if_the_node_refuses_its_request(start: St
         _ = reply.response
 
 
-def test_a_reply_has_no_response_and_no_error_before_the_node_answers(start: Start) -> None:
+def test_unanswered_reply_has_no_response(start: Start) -> None:
     ros = start(
         """
         import rospy

@@ -93,7 +93,7 @@ def test_a_repair_that_breaks_the_designed_world_is_refused() -> None:
 
 
 @pytest.mark.parametrize("loss", [0.45, 2.0])
-def test_the_result_states_whether_the_designed_world_caused_the_rejection(loss: float) -> None:
+def test_result_states_the_world_that_rejected(loss: float) -> None:
     """A loss of nearly the margin is not shown to be tolerable, and one of four margins is shown not to be."""
     costly = judged(world(DESIGNED), world(DESIGNED - loss, seed=1))
     weak = judged(world(DESIGNED - loss), world(DESIGNED, seed=1))
@@ -128,7 +128,7 @@ def test_early_failure_refuses_a_candidate_without_risk(drifted: bool, reason: s
     assert [one.passed for one in (found.drifted if drifted else found.nominal)].count(False) == 1
 
 
-def test_the_report_of_a_refused_candidate_includes_its_screening_missions() -> None:
+def test_report_includes_screening_missions() -> None:
     found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
     assert not found.accepted
     assert found.seeds == tuple(seeds(0)[: len(found.drifted)])
@@ -182,7 +182,7 @@ def test_totals_are_compared_seed_by_seed() -> None:
         assert not accept(varying(0.6), None, varying(0.0), seeds(at), reference, RISK).accepted
 
 
-def test_the_reason_for_refusal_is_not_shown_if_the_test_remains_undecided() -> None:
+def test_undecided_test_shows_no_refusal_reason() -> None:
     found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
     assert found.reason == "not shown"
 
@@ -193,7 +193,7 @@ def test_the_risks_of_all_tests_add_up_to_alpha() -> None:
     assert all(later < earlier for earlier, later in itertools.pairwise(risks))
 
 
-def test_59_missions_without_a_failure_show_a_failure_rate_below_five_percent() -> None:
+def test_clean_missions_bound_the_failure_rate() -> None:
     assert rate(59, 59, 0.95).low > 0.95 > rate(58, 58, 0.95).low
     assert acceptance_numbers((59,), 0.05, 0.05) == (0,)
     assert acceptance_numbers((58,), 0.05, 0.05) == (NEVER,)
@@ -217,7 +217,7 @@ def test_checks_together_keep_the_stated_risk(rate: float, risk: float) -> None:
     st.lists(st.floats(0.02, 1.0), min_size=1, max_size=4),
     st.integers(0, 2**16),
 )
-def test_a_bet_against_a_true_claim_is_rarely_won_for_any_distribution(
+def test_bet_against_a_true_claim_is_rarely_won(
     known: list[float], margin: float, steps: list[float], seed: int
 ) -> None:
     """Distributions with few values whose mean loses exactly the margin: skewed, bimodal, nearly constant."""
@@ -243,9 +243,7 @@ STRATA = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4).filter(lambda rat
 
 @settings(max_examples=60, deadline=None)
 @given(STRATA, st.sampled_from([0.05, 0.1, 0.25]), st.sampled_from([0.0333, 0.0111]))
-def test_failure_rates_that_vary_over_a_range_do_not_raise_the_risk(
-    shares: list[float], rate: float, risk: float
-) -> None:
+def test_varying_failure_rates_do_not_raise_the_risk(shares: list[float], rate: float, risk: float) -> None:
     """Seeds come from four strata in turn; the probability is exact (for one look see Hoeffding 1956)."""
     rates = [min(4 * rate * share / sum(shares), 1.0) for share in shares]
     numbers = acceptance_numbers(LOOKS, sum(rates) / 4, risk)

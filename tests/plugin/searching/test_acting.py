@@ -34,14 +34,14 @@ def unchanged(seed: int) -> Outcome:
 
 
 @pytest.mark.parametrize("observed", [True, False])
-def test_a_constant_that_changes_only_commands_gets_the_small_steps_first(observed: bool) -> None:
+def test_command_only_constant_gets_small_steps_first(observed: bool) -> None:
     trials = Trials(run, 300, unchanged=unchanged if observed else None)
     found = next(Sweep([*INERT, TEETH], mutations, (ALWAYS,), trials, GOAL).candidates(), None)
     assert (found is not None and trials.spent <= 2 * (len(INERT) + 1) + 14) is observed
     assert not observed or (found is not None and found.mutations[0].operand == TEETH)
 
 
-def test_the_unchanged_program_runs_once_for_each_seed_that_is_compared() -> None:
+def test_unchanged_program_runs_once_per_seed() -> None:
     trials = Trials(run, 300, unchanged=unchanged)
     acting, teeth, inert = Acting(trials, GOAL), Unit((TEETH,)), Unit((INERT[0],))
     assert not acting(teeth)

@@ -95,7 +95,7 @@ def test_refining_stops_after_a_refusal_or_a_small_gain() -> None:
     assert search.tried != []
 
 
-def test_before_a_proposal_the_constants_beside_a_plateau_are_refined_first(
+def test_constants_beside_a_plateau_are_refined_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[Any] = []
@@ -116,7 +116,7 @@ def test_before_a_proposal_the_constants_beside_a_plateau_are_refined_first(
     assert refined([], proposed=False) == {A}  # no plateau
 
 
-def test_an_offset_is_refined_half_as_often_as_other_constants() -> None:
+def test_offset_is_refined_half_as_often() -> None:
     offset = Unit((operand(3, "0.0", 0.0),))
     found, search = adjusted(entered((offset, 2.2, 3.0)), {})
     search.tried.clear()
@@ -125,7 +125,7 @@ def test_an_offset_is_refined_half_as_often_as_other_constants() -> None:
     assert search.tried == []
 
 
-def test_a_negative_factor_is_refined_only_if_it_was_proposed() -> None:
+def test_negative_factor_is_refined_only_if_proposed() -> None:
     def tried(proposed: bool) -> list[float]:
         search: Any = Sweeping(entered((A, -2.0, 3.0), (A, 2.2, 1.0)), proposed=proposed)
         list(Adjusting(search).between((A, ALWAYS), 0))
@@ -159,7 +159,7 @@ def test_the_best_constant_gets_its_exact_value_once(monkeypatch: pytest.MonkeyP
     assert exact(5.0, proposed=True) == []
 
 
-def test_the_fixed_parameters_of_a_promising_proposal_are_varied_once() -> None:
+def test_fixed_parameters_of_a_proposal_vary_once() -> None:
     climbed: Any = []
     joining: Any = lambda gains: SimpleNamespace(  # noqa: E731
         climbed=lambda base, unit: climbed.append((base.parts, unit)) or iter(())
@@ -182,7 +182,7 @@ def test_the_fixed_parameters_of_a_promising_proposal_are_varied_once() -> None:
     assert varied(4.0, proposed=False) == 0
 
 
-def test_refining_ends_if_the_gain_stays_the_same_between_two_values() -> None:
+def test_refining_ends_between_equal_gains() -> None:
     """A threshold that is low enough lets missions last longer; another one fails them then."""
     found, search = adjusted(entered((A, 2.2, 3.0)), {one / 1000: 3.0 for one in range(1, 60000)})
     for _ in range(5):
@@ -208,7 +208,7 @@ def test_sharp_peak_is_refined_until_its_neighbours_are_close() -> None:
     assert len(search.tried) == 2 * IDLE
 
 
-def test_only_the_first_of_several_uses_with_the_same_effect_is_refined() -> None:
+def test_only_the_first_similar_use_is_refined() -> None:
     whole = Unit((constant(3, "AHEAD", 0.65),))
     use = Unit((replace(constant(8, "AHEAD", 0.65), definition=whole.operands[0].definition),))
     gains = entered((whole, 2.2, 3.0), (whole, 0.4, -1.0), (use, 2.2, 3.0), (use, 0.4, -1.0))

@@ -77,7 +77,7 @@ def history(search: Callable[[Trials], None], workers: int) -> tuple[list[float]
 
 
 @pytest.mark.parametrize("search", [sweep, screening, halving, ranking])
-def test_the_history_does_not_depend_on_the_number_of_workers(search: Callable[[Trials], None]) -> None:
+def test_history_does_not_depend_on_workers(search: Callable[[Trials], None]) -> None:
     totals, labels, alone = history(search, 1)
     assert len(alone.begun) == len(totals)
     assert alone.most == 1

@@ -55,12 +55,12 @@ def fitted(
     return nearest(factor, deviation)[0], asked
 
 
-def test_a_minimum_between_two_exponents_is_found_where_both_lines_meet() -> None:
+def test_minimum_lies_where_both_lines_meet() -> None:
     assert fitted(0.8) == (pytest.approx(2**0.8, rel=1e-3), [1.0, WEAKER, 0.8])
     assert fitted(1.2) == (pytest.approx(2**1.2, rel=1e-3), [1.0, WEAKER, STRONGER, 1.2])
 
 
-def test_a_minimum_beyond_an_exponent_is_found_by_its_slope() -> None:
+def test_minimum_beyond_an_exponent_is_found() -> None:
     assert fitted(0.4)[0] == pytest.approx(2**0.4, rel=1e-3)
     assert len(fitted(0.4)[1]) == 4
     assert fitted(1.8)[0] == pytest.approx(2**1.8, rel=1e-3)
@@ -72,14 +72,14 @@ def test_the_exponent_stays_within_its_limits() -> None:
     assert fitted(9.0)[1][-1] == pytest.approx(MOST, abs=2e-3)
 
 
-def test_the_factor_is_kept_if_no_exponent_gives_a_smaller_deviation() -> None:
+def test_factor_is_kept_without_a_better_exponent() -> None:
     assert fitted(1.0) == (2.0, [1.0, WEAKER, STRONGER])
     assert fitted(0.98)[0] == pytest.approx(2.0, rel=0.02)
     assert nearest(2.0, lambda _: 3.0) == (2.0, 3.0)
     assert nearest(2.0, lambda _: inf) == (2.0, inf)
 
 
-def test_the_exponent_nearest_to_one_is_taken_if_deviations_are_equal() -> None:
+def test_exponent_nearest_to_one_wins_a_tie() -> None:
     values = iter([1.0, 0.5, 0.5, 0.5])
     found, least = nearest(2.0, lambda _: next(values))
     assert found == pytest.approx(2**0.8, rel=1e-3)
@@ -115,7 +115,7 @@ def published(
 SAME, OTHER = (("/a", (1.0, 1.0)),), (("/a", (1.0, 1.5)),)
 
 
-def test_published_messages_are_compared_on_the_first_seeds_and_changes_only() -> None:
+def test_messages_are_compared_on_the_first_seeds() -> None:
     acting, trials, ran = published({A: OTHER, B: OTHER, C: OTHER})
     ran(A, 2.2, SEEDS - 1)
     ran(B, 2.2, SEEDS)
@@ -164,7 +164,7 @@ def way(lengths: tuple[int | None, ...], designed: float | None) -> bool:
         ((900,), None, False),
     ],
 )
-def test_an_alternative_is_sought_if_missions_are_a_third_longer_or_shorter(
+def test_alternative_is_sought_for_unusual_missions(
     lengths: tuple[int | None, ...], designed: float | None, expected: bool
 ) -> None:
     assert way(lengths, designed) is expected
@@ -176,7 +176,7 @@ def test_a_constant_of_nature_always_has_an_alternative() -> None:
     assert another_way(gravity, none, none)
 
 
-def test_constants_of_the_best_statement_come_first_and_in_finer_steps() -> None:
+def test_constants_of_the_best_statement_come_first() -> None:
     here = Unit((replace(constant(5, "E"), site=B.operands[0].site),))
     found = gentler(
         A, [A, B, C, D, here, LITERAL], entered((B, 2.2, 4.0), (C, 2.2, 3.9), (A, 2.2, 9.0)), ALWAYS, 4.0
@@ -214,7 +214,7 @@ def test_largest_gain_is_tried_first() -> None:
     assert found == [(C, up), (B, down), (B, up), (D, down), (D, up)]  # C was tried with the first step
 
 
-def test_small_steps_are_tried_on_a_limited_number_of_constants() -> None:
+def test_small_steps_are_limited_to_a_few_constants() -> None:
     units = [Unit((constant(line, f"U{line}"),)) for line in range(11, 20)]
     found = smaller(A, 9.0, units, Gains(0.1), ALWAYS)
     assert {unit for unit, _ in found} == {*units[:OTHERS]}
@@ -226,7 +226,7 @@ def test_booleans_get_no_smaller_change() -> None:
     assert smaller(A, 9.0, [A, again, flag, share, LITERAL], Gains(0.1), ALWAYS) == []
 
 
-def test_a_small_step_is_at_most_half_the_change_found() -> None:
+def test_small_step_is_at_most_half_the_change() -> None:
     # |log 0.82| is 0.1985 and log 1.22 is 0.1989
     for half, steps in ((0.1980, []), (0.1987, [0.82]), (0.1990, [0.82, 1.22])):
         found = smaller(A, exp(2 * half), [A, B], Gains(0.1), ALWAYS)
@@ -246,7 +246,7 @@ def test_larger_steps_follow_the_three_constants_that_gained_most() -> None:
 
 
 @pytest.mark.parametrize(("gain", "followed"), [(0.05, True), (0.049, False)])
-def test_a_gain_of_half_a_percent_is_followed_by_larger_steps(gain: float, followed: bool) -> None:
+def test_small_gain_is_followed_by_larger_steps(gain: float, followed: bool) -> None:
     assert bool(onward([(B, 1.22)], A, 50.0, entered((B, 1.22, gain)), ALWAYS, 10.0)) is followed
 
 

@@ -44,7 +44,7 @@ def asking(make: Any, trials: Trials) -> Asking:
     return Asking("own:search", make, OPERANDS, mutations, (ALWAYS,), trials, GOAL, seed=7)
 
 
-def test_an_optimiser_gets_the_constants_and_the_gains_of_its_factors() -> None:
+def test_optimiser_gets_constants_and_gains() -> None:
     made: list[Grid] = []
 
     def make(constants: Sequence[Constant], seed: int) -> Grid:
@@ -114,7 +114,7 @@ def test_repeated_proposals_end_the_search() -> None:
     assert trials.spent == 0
 
 
-def test_a_spent_budget_ends_the_search_even_within_a_batch() -> None:
+def test_spent_budget_ends_a_batch() -> None:
     class Away(Grid):
         batch = 5
 
@@ -146,7 +146,7 @@ def test_an_invalid_proposal_is_reported(asked: Any, words: str) -> None:
         next(asking(Wrong, Trials(run, 10)).candidates())
 
 
-def test_an_exception_in_the_plug_in_is_reported_with_its_line() -> None:
+def test_plug_in_exception_is_reported_with_its_line() -> None:
     class Broken(Grid):
         def tell(self, factors: Sequence[float], gain: float) -> None:
             raise ZeroDivisionError("by nothing")

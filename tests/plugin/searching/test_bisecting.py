@@ -70,7 +70,7 @@ def test_the_search_also_bisects_towards_a_smaller_value() -> None:
     assert found is None  # not confirmed
 
 
-def test_a_value_is_offered_only_if_a_slightly_smaller_change_passes_too() -> None:
+def test_value_is_offered_only_if_a_smaller_one_passes() -> None:
     search = scripted(6.5, 25.0, {2.2: 0.0})
     assert bisected(search, FRONT, 19.77, ALWAYS, 0) is None
     assert search.of("holding") == []
@@ -86,7 +86,7 @@ def test_step_on_a_scale_is_compared_by_its_value() -> None:
     assert on_values(Unit((constant(3, "ZERO", 0.0),)), 2.2)[1] is None
 
 
-def test_the_nearest_tried_factor_lies_on_the_side_of_the_old_value() -> None:
+def test_nearest_factor_is_on_the_old_side() -> None:
     assert nearest(19.7, {2.2: 0.0, 5.0: 1.0, 30.0: 0.0, 0.4: 0.0}) == 5.0
     assert nearest(0.1, {0.4: 0.0, 0.05: 1.0, 2.2: 0.0}) == 0.4
     assert nearest(5.0, {}) == 1.0
@@ -104,7 +104,7 @@ def test_the_nearest_tried_factor_lies_on_the_side_of_the_old_value() -> None:
     ],
     ids=["up", "down", "both lose", "a gain is refined", "close", "first step"],
 )
-def test_a_value_between_too_little_and_too_much_is_tried(
+def test_value_between_too_little_and_too_much_is_tried(
     gains: dict[float, float], factors: list[float]
 ) -> None:
     assert amid(gains, 0.5) == factors

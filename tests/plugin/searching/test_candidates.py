@@ -78,7 +78,7 @@ def test_conditions_on_one_sensor_come_first() -> None:
     assert max(sizes) == 2
 
 
-def test_the_conditions_for_a_search_hold_where_much_changed_and_rarely_elsewhere() -> None:
+def test_conditions_hold_where_much_changed() -> None:
     mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
     seen = evidence(REGION, worlds=(OFFLINE, mixed), changes=CHANGES)
     assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
@@ -93,7 +93,7 @@ def test_region_of_all_cells_uses_the_observed_changes() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 3)), min_size=1, max_size=30), st.integers(0, 3))
-def test_every_drifted_value_of_an_unordered_sensor_gives_a_condition(cells: list[Cell], at: int) -> None:
+def test_every_unordered_drifted_value_gives_a_condition(cells: list[Cell], at: int) -> None:
     kind = Sensor("kind", topic="/kind", field="data", categories=("a", "b", "c", "d"))
     worlds = (world(1, [(0, at), (5, (at + 1) % 4)]), world(2, cells))
     guards = candidate_guards(evidence(Region(()), (X, kind), worlds))
@@ -108,7 +108,7 @@ def test_unconditional_search_comes_first_if_the_condition_always_holds() -> Non
     assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
 
 
-def test_the_search_without_a_condition_precedes_a_condition_that_holds_nearly_everywhere() -> None:
+def test_unconditional_search_precedes_a_wide_condition() -> None:
     stuck = world(3, [(2, 0)] * 39 + [(9, 1)])
     seen = evidence(Region(((2, 0),)), worlds=(OFFLINE, stuck), changes={(2, 0): 5.0})
     first, second = telling(candidate_guards(seen), seen, most=3)
@@ -122,20 +122,20 @@ def test_without_a_useful_condition_the_search_uses_no_condition() -> None:
     assert telling((), seen, most=3) == (ALWAYS,)
 
 
-def test_a_sensor_that_no_node_can_read_is_in_no_condition() -> None:
+def test_unreadable_sensor_is_in_no_condition() -> None:
     online = drive(3, range(4, 7), 3)
     guards = candidate_guards(evidence(Region(((4, 1, 0),)), (X, WET, SEEN), (online, online)))
     assert all(conjunct.sensor != SEEN for guard in guards for conjunct in guard.conjuncts)
 
 
-def test_a_region_of_all_cells_gives_no_condition_of_its_own() -> None:
+def test_region_of_all_cells_gives_no_condition() -> None:
     everywhere = Region(tuple(ONLINE.cells))
     dry = drive(1, range(0))
     guards = candidate_guards(evidence(everywhere, worlds=(dry, drive(4, range(10)))))
     assert all(conjunct.sensor == WET for guard in guards for conjunct in guard.conjuncts)
 
 
-def test_an_interval_is_unbounded_if_no_bin_was_seen_beyond_it() -> None:
+def test_interval_is_unbounded_without_bins_beyond() -> None:
     guards = candidate_guards(evidence(Region(((8, 0), (9, 0)))))
     assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
 
@@ -161,7 +161,7 @@ def test_condition_stores_where_it_holds() -> None:
     assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)
 
 
-def test_a_widened_condition_includes_either_all_values_beyond_the_range_or_none() -> None:
+def test_widened_condition_includes_all_or_no_outer_values() -> None:
     outside = world(9, [(x, 0) for x in (-1, 0, 1, 2, 5, 8, 9, 10)])
     for region in (((1, 0), (2, 0)), ((8, 0),)):
         guards = candidate_guards(evidence(Region(region), worlds=(outside, outside)))

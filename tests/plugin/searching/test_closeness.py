@@ -72,9 +72,7 @@ def test_alternatives_are_effective_constants_of_the_same_function() -> None:
 
 
 @pytest.mark.parametrize(("late", "first"), [(True, POWER), (False, LEAK)])
-def test_the_constant_whose_change_makes_missions_run_as_designed_comes_first(
-    late: bool, first: Operand
-) -> None:
+def test_most_faithful_constant_comes_first(late: bool, first: Operand) -> None:
     def factor(mutation: Mutation, of: Operand) -> float:
         return float(mutation.value) if mutation.operand == of else 1.0
 

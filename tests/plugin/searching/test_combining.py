@@ -72,13 +72,13 @@ def test_parts_of_a_combination_are_replaced_and_dropped() -> None:
     assert both.without(A).parts == ((B, 3.0),)
 
 
-def test_adding_a_constant_to_a_combination_starts_with_its_better_small_factor() -> None:
+def test_better_small_factor_starts_a_combination() -> None:
     chosen = selection(lambda _: 0.0, A={2.2: 1.0}, B={2.2: 1.0, 0.4: 2.0})
     added = [one.parts[-1] for turn in (0, 1) for one in chosen._with_another(joint((A, 2.2)), turn)]
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
-def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_slack() -> None:
+def test_forward_selection_grows_while_gaining() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 4.0 * ("A" in by) + 3.0 * (by.get("B") == 2.2) + 5.5 * ("B" in by and "C" in by)
 
@@ -91,7 +91,7 @@ def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_sla
     assert all(len(label.split(",")) <= 2 for label in little.trials.labels)  # no third part
 
 
-def test_a_combination_that_holds_is_yielded_once_without_its_unneeded_parts() -> None:
+def test_sufficient_combination_loses_unneeded_parts() -> None:
     chosen = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, gain = finished(chosen.gain(joint((A, 2.2), (B, 2.2), (C, 2.2))))
     assert (found, gain) == ([{"A": 2.2, "B": 2.2}], 10.0)
@@ -108,14 +108,14 @@ def test_a_combination_that_cannot_be_written_has_no_gain() -> None:
     assert finished(chosen.fewest(joint((A, 2.2)))) == ([], None)
 
 
-def test_the_values_of_a_combination_are_refined_one_after_the_other() -> None:
+def test_combination_values_are_refined_in_turn() -> None:
     chosen = selection(lambda by: -abs(log(by["A"] / 3.3)) - abs(log(by["B"] / 0.26)))
     _, (best, gain) = finished(chosen._balanced(joint((A, 2.2), (B, 0.4)), -9.0))
     assert best.parts == ((A, 3.3), (B, 0.26))
     assert gain == pytest.approx(0.0)
 
 
-def test_the_search_keeps_the_fewest_changes_that_restore_the_reward() -> None:
+def test_search_keeps_the_fewest_changes() -> None:
     needs = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, _ = finished(needs.fewest(joint(*((unit, 2.2) for unit in (A, B, C, D)))))
     assert found == [{"A": 2.2, "B": 2.2}]
@@ -126,7 +126,7 @@ def test_the_search_keeps_the_fewest_changes_that_restore_the_reward() -> None:
     assert found == []  # more than three parts
 
 
-def test_the_best_constant_is_paired_with_others_before_three_are_combined() -> None:
+def test_pairs_come_before_triples() -> None:
     chosen = selection(lambda by: {1: 1.0, 2: 5.0 + ("B" in by), 3: 10.0}.get(len(by), 0.0), (A, B, C, D))
     found, _ = finished(chosen.unions([(A, 2.2), (B, 2.2), (C, 2.2), (D, 0.4)], ALWAYS))
     assert found
@@ -158,7 +158,7 @@ def test_a_candidate_is_confirmed_once() -> None:
     assert (settled.held, settled.tried) == ({one}, {one, refused})
 
 
-def test_the_covariance_equals_the_matern_kernel_of_order_five_halves() -> None:
+def test_covariance_is_matern_five_halves() -> None:
     found = _kernel(np.array([[[0.0], [4.0]]]), np.array([2.0]))
     scaled = sqrt(5.0)  # at a distance of one length scale
     assert found == pytest.approx(np.array([[1.0, (1 + scaled + 5 / 3) * exp(-scaled)]]))
@@ -191,7 +191,7 @@ def jointly(earned: Earned, units: tuple[Unit, ...] = (A, B), hidden: int = 0) -
     return Jointly(units, chosen, chosen.trials, GOAL, np.random.default_rng(0), hidden)
 
 
-def test_a_joint_search_begins_with_the_original_and_the_given_points() -> None:
+def test_joint_search_begins_with_given_points() -> None:
     search = jointly(lambda by: 3.0 if by else 0.0)
     start = joint((B, 2.2))
     assert search._point(start) == (0.0, log(2.2))
@@ -201,7 +201,7 @@ def test_a_joint_search_begins_with_the_original_and_the_given_points() -> None:
     assert len(search._points) == 2 + FLAT  # all others earn the same
 
 
-def test_a_joint_search_finds_a_pair_and_ends_after_its_episodes() -> None:
+def test_joint_search_finds_a_pair() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 10.0 - 2 * abs(log(by.get("A", 1.0) / 3)) - 2 * abs(log(by.get("B", 1.0) / 0.4))
 
@@ -212,7 +212,7 @@ def test_a_joint_search_finds_a_pair_and_ends_after_its_episodes() -> None:
     assert search.trials.spent <= EPISODES + 1
 
 
-def test_the_joint_search_subtracts_the_deviation_from_the_share_of_the_gain() -> None:
+def test_joint_search_subtracts_the_deviation() -> None:
     search = jointly(lambda _: 0.0)
     assert search._valued(4.5, 0.25) == 0.25
     assert search._valued(99.0, 0.0) == 1.0
@@ -229,7 +229,7 @@ def test_joint_search_lowers_points_that_failed_elsewhere() -> None:
     assert value == pytest.approx(0.2)
 
 
-def test_proposals_move_one_to_three_coordinates_within_a_factor_of_twenty() -> None:
+def test_proposals_move_one_to_three_coordinates() -> None:
     units = tuple(Unit((constant(n, f"N{n}"),)) for n in range(6))
     search = jointly(lambda _: 0.0, units, hidden=2)
     starts = np.zeros((2, 6))
@@ -272,7 +272,7 @@ def greedy(totals: Mapping[str, float], seeds: int, budget: int = 999) -> Epsilo
     return EpsilonGreedy(operands, mutations, (ALWAYS,), Trials(run, budget), goal, range(seeds), generator)
 
 
-def test_epsilon_greedy_yields_candidates_that_reach_the_goal_and_reports_mean_gains() -> None:
+def test_epsilon_greedy_yields_sufficient_candidates() -> None:
     search = greedy({"A": 10.0, "B": 4.0}, 60)
     found = [factors(one) for one in search.candidates()]
     assert {name for one in found for name in one} == {"A"}
@@ -282,7 +282,7 @@ def test_epsilon_greedy_yields_candidates_that_reach_the_goal_and_reports_mean_g
     assert len(found) <= EpsilonGreedy.CONFIRMED
 
 
-def test_epsilon_greedy_without_constants_or_without_a_budget_yields_nothing() -> None:
+def test_epsilon_greedy_needs_constants_and_a_budget() -> None:
     search = greedy({"A": 10.0, "B": 4.0}, 60, budget=0)
     search.actions = []
     assert [*search.candidates()] == []

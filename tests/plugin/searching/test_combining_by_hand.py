@@ -105,14 +105,14 @@ def test_a_gain_that_may_be_noise_is_not_combined(gain: float, combined: bool) -
     assert bool(search.calls) is combined
 
 
-def test_nothing_is_combined_if_nothing_was_tried_or_everything_was_refused() -> None:
+def test_nothing_is_combined_without_a_tried_change() -> None:
     assert list(Combining(searching([A])).best_with_others()) == []
     search = searching([A], (A, 2.2, 9.0), refused={(A, ALWAYS)})
     list(Combining(search).best_with_others())
     assert search.calls == []
 
 
-def test_a_proposal_is_combined_only_with_parameters_of_the_same_change() -> None:
+def test_proposal_is_combined_with_its_own_parameters() -> None:
     same = Unit((replace(B.operands[0], span=A.operands[0].span),))
     search = searching([A, C, same], (A, 2.2, 3.0), proposed=True)
     list(Combining(search).best_with_others())
@@ -196,7 +196,7 @@ def test_joint_search_starts_at_the_three_best_points(
     assert starts == [Joint(((one, 2.2),), ALWAYS) for one in (B, A, C)]
 
 
-def test_a_joint_search_does_not_start_from_a_negative_factor(together: list[tuple[Any, ...]]) -> None:
+def test_joint_search_starts_at_no_negative_factor(together: list[tuple[Any, ...]]) -> None:
     search = searching([A, B], (A, -1.0, 3.0), (B, 2.2, 2.0), generator=np.random.default_rng(0))
     list(Combining(search).jointly([ALWAYS]))
     assert together[0][2] == [Joint(((B, 2.2),), ALWAYS)]
@@ -269,7 +269,7 @@ def test_effective_constant_gets_finer_factors_immediately() -> None:
     assert seen[-2:] == ["A2.2 C2.2", "A2.2 C0.4"]
 
 
-def test_a_constant_that_only_loses_under_another_change_is_not_refined() -> None:
+def test_losing_constant_is_not_refined() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         return Outcome(-2.0 if B.operands[0] in changes else 0.0, False)
 
@@ -278,7 +278,7 @@ def test_a_constant_that_only_loses_under_another_change_is_not_refined() -> Non
     assert seen == ["A2.2", "A2.2 B2.2", "A2.2 B1.5", "A2.2 B0.65"]
 
 
-def test_under_a_change_that_cannot_be_written_no_constant_is_retried() -> None:
+def test_unwritable_change_leads_to_no_retry() -> None:
     def world(changes: Mapping[Operand, float]) -> Outcome:
         raise RepairError("no place")
 
@@ -368,7 +368,7 @@ def test_each_use_of_a_confirmed_constant_is_changed_alone() -> None:
 
 
 @pytest.mark.parametrize(("budget", "learned"), [(3, 0), (4, 3)])
-def test_uses_are_changed_alone_only_if_an_episode_is_left_afterwards(budget: int, learned: int) -> None:
+def test_uses_change_alone_if_an_episode_is_left(budget: int, learned: int) -> None:
     search = Using(budget)
     Uses(search, PARTS).learn(WHOLE, ALWAYS, 2.2, 0)
     assert len(search.tried) == learned
@@ -395,7 +395,7 @@ def test_more_than_three_uses_are_not_changed_alone() -> None:
 # combinations
 
 
-def test_a_literal_is_combined_under_the_condition_of_the_first_change() -> None:
+def test_literal_is_combined_under_the_first_condition() -> None:
     literal = Unit((operand(9, "1.5", 1.5),))
     wider = Joint(((A, 2.2),), WET).with_part(literal, 0.4)
     assert wider.guard == WET

@@ -49,7 +49,7 @@ def test_known_designed_rewards_run_no_mission(goal: Goal) -> None:
     assert ran.beside == 0
 
 
-def test_missions_that_fail_or_fall_far_short_are_not_compared() -> None:
+def test_clearly_failed_missions_are_not_compared() -> None:
     failing, short = trials(0.0, passed=False), trials(0.0, designed=6.5)
     assert not confirmed(CANDIDATE, failing, GOAL, 0)
     assert not confirmed(CANDIDATE, short, GOAL, 0)

@@ -62,14 +62,14 @@ def test_small_gain_is_refined_on_its_own_seed() -> None:
     assert {seed for words, seed in ran if words == "A 2.701"} > {3}  # confirmed on further seeds
 
 
-def test_without_a_good_value_only_a_few_episodes_are_spent() -> None:
+def test_few_episodes_are_spent_without_a_good_value() -> None:
     yielded, ran = found({A: NARROW, B: NARROW, C: NARROW}, (7.0, 8.0))
     assert yielded == ["structure", "structure"]
     assert len({words[0] for words, _ in ran}) == CONSTANTS
     assert len(ran) <= CONSTANTS * (EPISODES + 1)
 
 
-def test_a_value_that_is_good_on_one_seed_only_is_not_yielded() -> None:
+def test_value_good_on_one_seed_is_not_yielded() -> None:
     assert found({A: NARROW}, (2.5, 2.9), easy=3)[0] == ["structure", "structure"]
 
 
@@ -108,7 +108,7 @@ def in_place_of_a_factor(good: float, refused: bool = False) -> tuple[list[str],
     return yielded, list(dict.fromkeys(ran))
 
 
-def test_a_constant_of_a_scaled_command_comes_before_the_factor() -> None:
+def test_constant_of_a_command_comes_before_its_factor() -> None:
     yielded, ran = in_place_of_a_factor(0.2)
     assert yielded == ["0.1", "structure"]
     assert ran[:2] == ["0.1 → 0.2", "2.0 → 4"]  # the statement that is nearest to the command comes first
@@ -116,6 +116,6 @@ def test_a_constant_of_a_scaled_command_comes_before_the_factor() -> None:
     assert not any(one.startswith("3.0") for one in ran)  # another command
 
 
-def test_a_factor_on_a_command_stays_if_no_constant_of_it_suffices() -> None:
+def test_factor_stays_if_no_constant_suffices() -> None:
     assert in_place_of_a_factor(0.3)[0] == ["structure"]
     assert in_place_of_a_factor(0.2, refused=True)[0] == ["structure"]

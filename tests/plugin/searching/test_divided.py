@@ -66,12 +66,12 @@ def test_values_that_succeed_on_different_missions_divide_them(
     assert trials.spent - spent == episodes
 
 
-def test_the_exponent_is_tried_as_proposed_and_then_larger_and_smaller() -> None:
+def test_proposed_exponent_is_tried_first() -> None:
     law = Candidate((Mutation(SPEED, 1.0, form=LAW),), ALWAYS)
     assert [one.mutations[0].value for one in stronger_and_weaker(law)] == list(POWERS)
 
 
-def test_a_search_yields_a_law_that_all_missions_confirm_once() -> None:
+def test_confirmed_law_is_yielded_once() -> None:
     asked: list[float] = []
 
     def following(changed: Candidate) -> Iterator[Candidate]:

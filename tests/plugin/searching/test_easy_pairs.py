@@ -52,7 +52,7 @@ def test_narrow_good_range_is_found_on_an_easy_seed() -> None:
     assert trials.spent < 100
 
 
-def test_while_no_change_gains_anything_the_search_uses_the_easy_seeds() -> None:
+def test_search_without_gains_uses_easy_seeds() -> None:
     ran: set[int] = set()
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -51,7 +51,7 @@ def test_exact_value_is_found_before_combining() -> None:
     assert not any("," in label for label in trials.labels)
 
 
-def test_an_alternative_constant_is_compared_at_its_own_exact_value() -> None:
+def test_alternative_is_compared_at_its_exact_value() -> None:
     """LEAK hides that POWER is 0.72 of what it was; the factor tried first on alternatives, 0.667, is not exact."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -39,7 +39,7 @@ def found(name: str, folder: Path) -> tuple[list[float], list[str]]:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_each_example_search_finds_the_gain_and_depends_on_the_seed(name: str, tmp_path: Path) -> None:
+def test_example_searches_depend_on_the_seed(name: str, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # warnings of the libraries that the examples use
         pytest.importorskip(name.partition("_")[0])

@@ -48,7 +48,7 @@ def search(world: Sander, *factors: float, idle: bool = True, goal: Goal = GOAL)
     return made
 
 
-def test_a_force_between_too_much_and_too_little_is_found() -> None:
+def test_force_between_two_extremes_is_found() -> None:
     world = Sander(27.0, 33.0)
     (found,) = in_between(made := search(world, 2.2, 0.4), ALWAYS, made.units)
     assert float(found.mutations[0].value) == pytest.approx(60.0 * 0.4**0.75, rel=0.02)
@@ -56,7 +56,7 @@ def test_a_force_between_too_much_and_too_little_is_found() -> None:
 
 
 @pytest.mark.parametrize(("low", "high"), [(24.5, 25.5), (56.0, 58.0), (36.7, 37.0)])
-def test_each_step_halves_the_interval_that_contains_the_good_values(low: float, high: float) -> None:
+def test_each_step_halves_the_good_interval(low: float, high: float) -> None:
     world = Sander(low, high)
     list(in_between(made := search(world, 0.4), ALWAYS, made.units))
     assert len(world.forces) == STEPS

@@ -37,7 +37,7 @@ def constant(line: int, code: str, value: float | bool | None, path: str = "node
         ("self.gains[i]", ""),
     ],
 )
-def test_the_name_of_a_family_has_a_star_where_its_members_differ(code: str, shared: str) -> None:
+def test_family_name_has_a_star(code: str, shared: str) -> None:
     assert shared_name(code) == shared
 
 
@@ -83,7 +83,7 @@ def test_nine_constants_are_a_table_and_not_a_family() -> None:
     assert not families(many)
 
 
-def test_constants_that_only_help_together_are_found_by_the_sweep() -> None:
+def test_sweep_finds_constants_that_help_together() -> None:
     axes = tuple(constant(n, f'K["{axis}"]', 2.0 + n) for n, axis in enumerate("xyz", start=1))
     others = tuple(constant(n, f"C{n}", 1.0) for n in range(10, 20))
 

@@ -49,7 +49,7 @@ def test_best_change_is_large_if_no_smaller_one_gains(
 
 
 @pytest.mark.parametrize("count", [1, 3, 8])
-def test_the_fewer_constants_matter_the_more_inward_steps_are_tried(count: int) -> None:
+def test_fewer_constants_get_more_inward_steps(count: int) -> None:
     table = gains_of(*((unit, 5.0, -1.0) for unit in UNITS[:count]))
     matter, steps = inward(UNITS, table)
     assert matter == list(UNITS[:count])
@@ -84,7 +84,7 @@ def test_narrow_range_is_found_despite_a_large_gain() -> None:
         ([], []),
     ],
 )
-def test_smaller_changes_that_gain_much_are_refined_before_a_large_change(
+def test_good_smaller_changes_are_refined_first(
     entries: list[tuple[int, float, float]], expected: list[int]
 ) -> None:
     table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))
@@ -126,7 +126,7 @@ def test_offset_is_far_if_it_changes_by_a_large_factor(factor: float, far: bool)
     assert best_is_far(gains_of((unit, factor, 4.0)), ALWAYS) is far
 
 
-def test_inward_steps_are_tried_on_named_constants_if_any_named_constant_matters() -> None:
+def test_inward_steps_prefer_named_constants() -> None:
     literal = UNITS[0]
     named = Unit((replace(GAINS[1], code="GAIN", definition=GAINS[7].span),))
     both = (literal, named)

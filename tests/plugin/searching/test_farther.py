@@ -75,9 +75,7 @@ def test_six_constants_get_a_farther_step() -> None:
 
 
 @pytest.mark.parametrize(("gain", "farther"), [(2.0, ["A=5", "A=0.15"]), (0.2, [])])
-def test_farther_steps_come_before_structural_changes_if_another_constant_gained(
-    gain: float, farther: list[str]
-) -> None:
+def test_farther_steps_come_before_structural_changes(gain: float, farther: list[str]) -> None:
     begun: list[int] = []
     steps: list[float] = []
 

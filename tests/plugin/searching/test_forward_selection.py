@@ -23,13 +23,13 @@ def operand(line: int, code: str, value: float | None, column: int = 5, named: b
     return Operand(SiteId("node", "run", f"line {line}"), span, code, value, ELSEWHERE if named else span)
 
 
-def test_the_uses_of_a_constant_within_a_statement_change_together() -> None:
+def test_uses_in_a_statement_change_together() -> None:
     first, second = operand(3, "LIMIT", 2.0, 5, named=True), operand(3, "LIMIT", 2.0, 20, named=True)
     elsewhere = operand(4, "LIMIT", 2.0, 5, named=True)
     assert [unit.operands for unit in units([first, elsewhere, second])] == [(first, second), (elsewhere,)]
 
 
-def test_a_symmetric_pair_of_limits_changes_together_but_equal_literals_do_not() -> None:
+def test_symmetric_limits_change_together() -> None:
     low, high = operand(3, "-2.0", -2.0, 5), operand(3, "2.0", 2.0, 20)
     half, other = operand(4, "0.5", 0.5, 5), operand(4, "0.5", 0.5, 20)
     assert [len(unit.operands) for unit in units([low, high, half, other])] == [2, 1, 1]

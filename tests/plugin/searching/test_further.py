@@ -88,7 +88,7 @@ def test_ineffective_constant_is_combined_with_two_good_ones() -> None:
     assert trials.spent < 80
 
 
-def test_seeds_on_which_other_candidates_failed_come_first_in_a_confirmation() -> None:
+def test_failed_seeds_come_first_in_a_confirmation() -> None:
     hard = 7
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -103,7 +103,7 @@ def test_seeds_on_which_other_candidates_failed_come_first_in_a_confirmation() -
     assert trials.spent == before + 1
 
 
-def test_a_candidate_that_loses_the_missions_of_rejected_candidates_is_not_confirmed() -> None:
+def test_candidate_with_known_losses_is_not_confirmed() -> None:
     trials = world(lambda _, __: 10.0)
     candidate = Candidate((mutations(GAINS[0], 2.2),), ALWAYS)  # type: ignore[arg-type]
     trials.loses = lambda one: one == candidate
@@ -111,7 +111,7 @@ def test_a_candidate_that_loses_the_missions_of_rejected_candidates_is_not_confi
     assert trials.spent == 0
 
 
-def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
+def test_literal_zero_offset_is_refined_half_as_often() -> None:
     zero = operand(3, "0.0", 0.0)
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -127,7 +127,7 @@ def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
     assert trials.spent < 40
 
 
-def test_constants_refused_under_a_condition_may_be_combined_under_the_same_condition() -> None:
+def test_refused_constants_may_be_combined() -> None:
     search = Sweep(GAINS[:2], mutations, (ALWAYS, WET), world(lambda *_: 0.0), GOAL)
     first, second = search.attempts.units
     search.attempts.refused = {(first, ALWAYS), (second, ALWAYS), (first, WET)}

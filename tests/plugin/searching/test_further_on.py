@@ -56,7 +56,7 @@ def changed(found: Candidate | None) -> dict[Operand, float]:
     return {one.operand: float(one.value) for one in found.mutations} if found is not None else {}
 
 
-def test_the_constants_of_the_statements_that_are_entered_come_first() -> None:
+def test_constants_of_entered_statements_come_first() -> None:
     found, trials = found_by(Climber(), [HELD])
     assert changed(found) == {REACH: 2.2, FORCE: 1.5}
     assert trials.spent <= 10

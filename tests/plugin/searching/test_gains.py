@@ -62,7 +62,7 @@ def gains(slack: float = 0.5) -> Gains:
     return found
 
 
-def test_the_unchanged_constant_has_gain_zero_unless_it_was_proposed() -> None:
+def test_unchanged_constant_has_gain_zero() -> None:
     found = gains()
     assert found.of(A, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 0.4: -3.0, 5.0: 5.0}
     assert found.of(A, WET) == {}
@@ -80,11 +80,11 @@ def test_gains_are_listed_separately_for_each_condition() -> None:
 
 
 @pytest.mark.parametrize(("slack", "expected"), [(4.9, True), (5.0, False)])
-def test_a_search_has_a_gain_only_if_it_exceeds_the_slack(slack: float, expected: bool) -> None:
+def test_gain_must_exceed_the_slack(slack: float, expected: bool) -> None:
     assert gains(slack).anything() is expected
 
 
-def test_a_proposal_counts_as_ineffective_if_it_changed_no_episode() -> None:
+def test_ineffective_proposal_changed_no_episode() -> None:
     found = Gains(0.5, proposed=True)
     found.enter((A, ALWAYS), 1.0, 0.0)
     found.enter((A, ALWAYS), 2.2, 3.0)
@@ -96,7 +96,7 @@ def test_a_proposal_counts_as_ineffective_if_it_changed_no_episode() -> None:
     assert not plain.idle(A)
 
 
-def test_a_constant_has_an_effect_if_any_factor_changed_an_episode() -> None:
+def test_effective_constant_changed_some_episode() -> None:
     found = gains()
     assert [found.moves(unit) for unit in (A, B, C)] == [True, True, False]
     assert found.moving([C, B, A]) == [B, A]
@@ -107,7 +107,7 @@ def test_a_constant_has_an_effect_if_any_factor_changed_an_episode() -> None:
     assert one_way.moving([C, A]) == [A]  # moved in both directions, under any condition
 
 
-def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
+def test_constants_that_always_lose_are_found() -> None:
     found = gains()
     assert found.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
     assert found.lost_both_ways(ALWAYS, [A, B], (0.4,)) == [A, B]
@@ -134,7 +134,7 @@ def test_constants_are_sorted_by_gain() -> None:
     assert found.leading(2.2, ALWAYS, [A, B, C], -1.0, inert=True) == [A, C, B]
 
 
-def test_the_best_factor_of_each_constant_is_found_under_the_given_conditions() -> None:
+def test_best_factor_is_found_per_condition() -> None:
     found = gains()
     assert found.best_under([ALWAYS, WET]) == [(A, 5.0), (B, 0.4)]
     assert found.best_under([ALWAYS]) == [(A, 5.0)]
@@ -166,7 +166,7 @@ GRAVITY = constant(8, "GRAVITY", 9.81)
         (operand(9, "9.81", 9.81), Oddness.NATURE),
     ],
 )
-def test_each_kind_of_constant_has_its_rank_in_the_search_order(one: Operand, tried: Oddness) -> None:
+def test_constant_kinds_have_a_search_order(one: Operand, tried: Oddness) -> None:
     assert writing(one) is tried
 
 
@@ -202,7 +202,7 @@ def test_readable_changes_come_first() -> None:
     assert plainer(Oddness.OFFSET, {}, mixed, 0.0) == [*others, literal]
 
 
-def test_a_named_constant_in_the_same_statement_is_tried_before_the_others() -> None:
+def test_named_constant_of_the_statement_is_tried_first() -> None:
     others = [Unit((constant(n, f"N{n}"),)) for n in range(20, 24)]
     beside = Unit((replace(LITERAL, site=others[3].operands[0].site),))
     assert plainer(Oddness.INNER, {}, others, 5.0, beside) == [others[3], others[0]]
@@ -236,7 +236,7 @@ def test_candidate_with_much_longer_missions_is_unusual(steps: int | None, expec
     assert another_way(changed(Unit((GRAVITY,)), 2.2), trials, GOAL)
 
 
-def test_constants_of_a_statement_that_gained_are_tried_in_finer_steps() -> None:
+def test_gaining_statement_gets_finer_steps() -> None:
     beside = Unit((replace(constant(30, "BESIDE"), site=A.operands[0].site),))
     found = gains()
     assert gentler(A, [A, C, B, Unit((LITERAL,)), beside], found, ALWAYS, 5.0) == [
@@ -246,7 +246,7 @@ def test_constants_of_a_statement_that_gained_are_tried_in_finer_steps() -> None
     assert gentler(A, [beside], found, ALWAYS, 5.1) == [(beside, COARSE)]
 
 
-def test_screening_divides_more_than_forty_constants_into_blocks_of_twenty() -> None:
+def test_screening_uses_blocks_of_twenty() -> None:
     many = [Unit((operand(n, "1.0", 1.0),)) for n in range(41)]
     assert [len(block) for block in blocks(many)] == [20, 20, 1]
     assert [len(block) for block in blocks(many[:40])] == [40]
@@ -266,7 +266,7 @@ def test_the_deviation_compares_cumulative_rewards_step_by_step() -> None:
     assert deviation((), ()) == 0.0
 
 
-def test_uses_of_one_named_constant_in_a_file_are_changed_together() -> None:
+def test_uses_of_a_named_constant_change_together() -> None:
     first, other = constant(3, "A"), replace(constant(9, "A"), definition=constant(3, "A").definition)
     elsewhere = replace(other, span=replace(other.span, path="other.py"))
     literal = operand(5, "2.0", 2.0)
@@ -298,7 +298,7 @@ def test_changes_are_ranked_by_gain_and_ties_are_found() -> None:
     assert found.gain(Arm(A, 9.0, ALWAYS)) == 0.0
 
 
-def test_a_new_factor_lies_between_two_neighbouring_factors_of_the_same_constant() -> None:
+def test_new_factor_lies_between_neighbours() -> None:
     seen = {0: 1.0}
     found = race({(A, 4.0): seen, (A, 1.0): seen, (A, -2.0): seen, (B, 2.0): seen, (A, 1.05): seen})
     assert [arm.factor for arm in found.around(Arm(A, 4.0, ALWAYS))] == [round(math.sqrt(4.2), 3)]
@@ -311,9 +311,7 @@ def test_a_new_factor_lies_between_two_neighbouring_factors_of_the_same_constant
 @given(
     st.dictionaries(st.integers(0, 5), st.floats(-9, 9)), st.dictionaries(st.integers(0, 5), st.floats(-9, 9))
 )
-def test_a_change_counts_as_worse_only_after_three_common_seeds(
-    one: dict[int, float], other: dict[int, float]
-) -> None:
+def test_worse_change_needs_three_common_seeds(one: dict[int, float], other: dict[int, float]) -> None:
     differences = paired(one, other)
     assert differences == [one[seed] - other[seed] for seed in one if seed in other]
     if len(differences) < 3:
@@ -361,7 +359,7 @@ LINE = Sensor("x", topic="/x", field="data", low=0, high=8, bins=8)
     ("cells", "line", "arc"),
     [((2, 3, 5), (2, 5), (2, 5)), ((0, 1, 7), (0, 7), (7, 9)), ((4,), (4, 4), (4, 4)), ((), None, None)],
 )
-def test_the_interval_around_bins_of_an_angle_is_the_shortest_arc(
+def test_angle_interval_is_the_shortest_arc(
     cells: tuple[int, ...], line: tuple[int, int] | None, arc: tuple[int, int] | None
 ) -> None:
     some = [(one,) for one in cells]
@@ -369,7 +367,7 @@ def test_the_interval_around_bins_of_an_angle_is_the_shortest_arc(
     assert _hull(some, 0, ANGLE) == arc
 
 
-def test_an_interval_is_unrestricted_if_it_covers_all_visited_bins() -> None:
+def test_full_interval_is_unrestricted() -> None:
     assert _spans((2, 4), {2, 4}, LINE)
     assert not _spans((2, 4), {2, 5}, LINE)
     assert _spans((7, 9), {0, 1, 7}, ANGLE)
@@ -408,9 +406,7 @@ def test_intervals_are_widened_by_two_bins() -> None:
         (ANGLE, 7.0 + 1e-10, 1.0 - 1e-10, [0, 7]),
     ],
 )
-def test_a_condition_holds_in_the_bins_that_it_covers_up_to_rounding(
-    sensor: Sensor, low: float, high: float, expected: list[int]
-) -> None:
+def test_condition_holds_in_its_bins(sensor: Sensor, low: float, high: float, expected: list[int]) -> None:
     guard = Guard((Conjunct(sensor, low, high),))
     assert [index for index in range(8) if holds(guard, (index,), [sensor])] == expected
 

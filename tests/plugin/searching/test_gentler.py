@@ -78,7 +78,7 @@ def test_the_search_moves_constants_of_nature_last(value: float) -> None:
 
 
 @pytest.mark.parametrize("value", [9.5, 10.0, 3.1, 3.2, 1.57, 0.0, 6.0, 12.57])
-def test_numbers_other_than_gravity_and_pi_are_not_constants_of_nature(value: float) -> None:
+def test_only_physical_numbers_are_constants_of_nature(value: float) -> None:
     assert not of_nature(named(4, "LIMIT", value))
     assert not of_nature(replace(operand(4, "True", 1.0), value=True))
 
@@ -104,7 +104,7 @@ def test_search_for_a_gentler_repair_is_short() -> None:
     assert slow.attempts.trials.spent <= kept.attempts.trials.spent + 12
 
 
-def test_a_repair_of_a_getter_changes_only_the_calls_that_need_it() -> None:
+def test_getter_repair_changes_only_needed_calls() -> None:
     getter = named(3, "self.get(name).value", 1.0, "return self.get(name).value")
     getter = replace(getter, site=replace(getter.site, qualname="Cell.p"))
     feed, tension, speed = (
@@ -126,7 +126,7 @@ def test_a_repair_of_a_getter_changes_only_the_calls_that_need_it() -> None:
     assert [one.operand for one in second.mutations] == [getter]
 
 
-def test_candidates_act_alike_if_all_their_common_seeds_end_alike() -> None:
+def test_equal_endings_mean_alike_candidates() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         other = candidate.mutations[0].operand is REACTION
         return Outcome(float(seed), passed=True, steps=STEPS + (other and seed == 3))
@@ -141,7 +141,7 @@ def test_candidates_act_alike_if_all_their_common_seeds_end_alike() -> None:
     assert trials.same_as(one, Candidate((Mutation(GRAVITY, 2.0),), ALWAYS)) == 0
 
 
-def test_the_repaired_constant_on_another_scale_is_not_an_alternative_to_itself() -> None:
+def test_constant_is_no_alternative_to_itself() -> None:
     found, other = Unit((PADS,)), Unit((CRUISE,))
     units = [found, Unit((PADS,), SHARE), other]
     assert [unit for unit, _ in gentler(found, units, Gains(0.1), ALWAYS, 1.0)] == [other]

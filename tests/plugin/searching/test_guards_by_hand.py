@@ -63,11 +63,11 @@ def test_cell_without_drifted_visits_has_no_share() -> None:
     assert along([1, 2], [1, 2], {1: 1.0, 7: 99.0}).shares() == {(1,): 0.5, (2,): -0.5}
 
 
-def test_the_change_of_a_new_cell_is_not_counted_twice() -> None:
+def test_new_cell_change_is_counted_once() -> None:
     assert along([1, 5], [1], {1: 1.0, 5: 99.0}, novel=(5,)).shares() == {(1,): -0.5, (5,): 0.5}
 
 
-def test_a_new_cell_that_was_not_visited_has_no_share() -> None:
+def test_unvisited_new_cell_has_no_share() -> None:
     assert along([1, 1], [1], {1: 2.0}, novel=(6,)).shares()[6,] == 0.0
 
 
@@ -83,14 +83,14 @@ def test_the_steepest_interval_has_the_largest_sum_of_shares() -> None:
     assert _steepest(seen, 0) == (2, 4)
 
 
-def test_a_small_gap_is_included_if_the_cells_behind_it_outweigh_it() -> None:
+def test_small_gap_is_included_if_worthwhile() -> None:
     designed = [1] * 8 + [3] * 2
     assert _steepest(along([2, 3, 4], designed, {2: 1.0, 4: 1.0}), 0) == (2, 4)
     designed = [1] * 2 + [3] * 8
     assert _steepest(along([2, 3, 4], designed, {2: 2.0, 4: 1.0}), 0) == (2, 2)
 
 
-def test_an_interval_of_angles_goes_across_the_end_of_the_range() -> None:
+def test_angle_interval_crosses_the_range_end() -> None:
     seen = along([0, 7, 3], [3, 4], {7: 1.0, 0: 1.0, 3: 0.1}, sensor=ANGLE)
     assert _steepest(seen, 0) == (7, 8)
     assert _steepest(along([0, 7, 3], [3, 4], {7: 1.0, 0: 1.0, 3: 0.1}, sensor=LINE), 0) == (0, 0)
@@ -114,7 +114,7 @@ SEEN_BINS = {2, 3, 4, 5, 6}
     ("bins", "low", "high"),
     [((3, 4), 3.0, 5.0), ((2, 4), -inf, 5.0), ((4, 6), 4.0, inf), ((2, 2), -inf, 3.0), ((6, 6), 6.0, inf)],
 )
-def test_an_end_is_open_if_nothing_was_seen_beyond_it(bins: tuple[int, int], low: float, high: float) -> None:
+def test_end_is_open_without_data_beyond(bins: tuple[int, int], low: float, high: float) -> None:
     assert _conjunct(X, bins, SEEN_BINS) == Conjunct(X, low, high)
 
 
@@ -136,18 +136,18 @@ def test_each_condition_is_proposed_alone_and_both_together() -> None:
     assert two(((4, 6), (1, 1))) == [Guard((ON_X,)), Guard((ON_WET,)), Guard((ON_X, ON_WET))]
 
 
-def test_a_condition_that_always_holds_or_is_unknown_is_not_proposed() -> None:
+def test_constant_condition_is_not_proposed() -> None:
     assert two(((0, 9), (1, 1))) == [Guard((ON_WET,))]
     assert two(((4, 6), None)) == [Guard((ON_X,))]
     assert two(((4, 6), (0, 1))) == [Guard((ON_X,))]
     assert two((None, None)) == []
 
 
-def test_a_condition_that_no_node_can_check_is_not_proposed() -> None:
+def test_uncheckable_condition_is_not_proposed() -> None:
     assert two(((4, 6), (1, 1)), SEEN) == [Guard((ON_X,))]
 
 
-def test_the_bins_of_both_worlds_decide_whether_a_condition_always_holds() -> None:
+def test_bins_of_both_worlds_decide_a_constant_condition() -> None:
     seen = Evidence((X,), world(1, [(4,), (9,)]), world(2, [(4,), (5,)]), Region(()), {})
     assert list(_combined([(4, 6)], seen)) == [Guard((Conjunct(X, -inf, 7.0),))]
 
@@ -204,7 +204,7 @@ def test_poor_condition_follows_the_unconditional_search() -> None:
     assert telling([guard_on(1.0, 2.0)], seen, 2)[0] == ALWAYS
 
 
-def test_a_condition_that_never_holds_in_the_designed_world_gets_a_bonus() -> None:
+def test_condition_that_never_holds_as_designed_gets_a_bonus() -> None:
     harmless = along([1, 5, 5, 5], [1, 2], {1: 0.1, 5: 0.02}, novel=())
     assert telling([guard_on(5.0, 6.0)], harmless, 2)[0] == guard_on(5.0, 6.0)
     visited = along([1, 5, 5, 5], [1, 2, 1, 2, 1, 2, 1, 2, 1, 5], {1: 0.1, 5: 0.02})
@@ -231,7 +231,7 @@ def test_angle_interval_is_widened_on_both_sides() -> None:
     assert (low, high) == (pytest.approx(0.0), pytest.approx(3 * pi / 4 + step - 2 * pi))
 
 
-def test_an_interval_of_angles_that_would_cover_the_circle_has_open_ends() -> None:
+def test_full_circle_interval_has_open_ends() -> None:
     assert widened(ANGLE, 0.0, 3.0) == (6.0, 5.0)
     assert widened(ANGLE, 0.0, 4.0) == (-inf, inf)
     assert widened(ANGLE, 6.0, 2.0) == (-inf, inf)

@@ -48,7 +48,7 @@ def test_constant_is_found_while_another_change_is_applied() -> None:
     assert trials.spent <= SEEDS + EPISODES
 
 
-def test_a_constant_that_helps_but_not_enough_is_moved_further() -> None:
+def test_helpful_constant_is_moved_further() -> None:
     def wide(candidate: Candidate, seed: int) -> Outcome:
         by = {one.operand: float(one.value) for one in candidate.mutations}
         if seed == EASY:
@@ -112,7 +112,7 @@ def test_other_constants_are_tried_before_larger_steps() -> None:
     assert trials.spent < 60
 
 
-def test_other_constants_replace_the_first_change_of_a_refused_combination() -> None:
+def test_other_constants_replace_a_refused_first_change() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         by = {one.operand: float(one.value) for one in candidate.mutations}
         if by.get(REST[0], 1.0) >= 1.4 and by.get(DAMPING, 1.0) >= 2.0:

@@ -58,7 +58,7 @@ def test_two_constants_that_must_grow_together_are_found() -> None:
     assert search() == (found, spent)
 
 
-def test_a_surrogate_follows_the_values_and_ignores_a_constant_without_effect() -> None:
+def test_surrogate_ignores_ineffective_constants() -> None:
     draws = np.random.default_rng(0)
     points = draws.uniform(-1.0, 1.0, (40, 2))
     fitted = Surrogate(points, np.sin(3.0 * points[:, 0]))
@@ -68,7 +68,7 @@ def test_a_surrogate_follows_the_values_and_ignores_a_constant_without_effect() 
     assert fitted.fitted[1] > fitted.fitted[0]
 
 
-def test_improvement_is_expected_where_the_mean_is_high_or_little_is_known() -> None:
+def test_improvement_is_expected_at_high_means_or_uncertainty() -> None:
     mean, deviation = np.array([0.0, 1.0, 0.0]), np.array([0.1, 0.1, 2.0])
     low, high, unknown = expected_improvement(mean, deviation, 0.9).tolist()
     assert low < 1e-6 < high
@@ -76,7 +76,7 @@ def test_improvement_is_expected_where_the_mean_is_high_or_little_is_known() -> 
     assert high == pytest.approx(0.1083, abs=1e-3)
 
 
-def test_all_uses_of_a_named_constant_in_a_file_change_together() -> None:
+def test_uses_of_a_named_constant_move_together() -> None:
     first, again = operand(3, "WHEEL"), operand(8, "WHEEL")
     there, literal = operand(3, "WHEEL", path="other.py"), operand(9, "2.0")
     found = whole_constants(units([first, literal, again, there]))

@@ -54,7 +54,7 @@ def test_a_surrogate_predicts_the_conditional_mean_and_deviation(lengths: tuple[
         assert deviation[0] == pytest.approx(VALUES.std() * np.sqrt(1 - near @ inverse @ near))
 
 
-def test_the_likeliest_length_scales_are_found_one_coordinate_at_a_time() -> None:
+def test_length_scales_are_found_one_by_one() -> None:
     best = np.ones(2)
     for at in range(2):
         tries = [best.copy() for _ in jointly.LENGTHS]
@@ -64,7 +64,7 @@ def test_the_likeliest_length_scales_are_found_one_coordinate_at_a_time() -> Non
     assert Surrogate(POINTS, VALUES).fitted.tolist() == best.tolist()
 
 
-def test_if_all_values_are_equal_this_value_is_predicted_everywhere() -> None:
+def test_equal_values_are_predicted_everywhere() -> None:
     mean, deviation = Surrogate(POINTS, np.full(4, 7.0)).predict(np.array([[0.3, 0.2], [50.0, 50.0]]))
     assert mean.tolist() == [7.0, 7.0]
     assert deviation[1] == pytest.approx(1.0)
@@ -105,7 +105,7 @@ def test_trial_value_is_the_gain_minus_its_deviation(gain: float, away: float, v
     assert found._valued(0.25, 0.0) == 0.25
 
 
-def test_a_search_without_an_improvement_ends_after_twenty_five_trials() -> None:
+def test_fruitless_search_ends_after_twenty_five_trials() -> None:
     found, trials = search({})
     assert list(found.candidates([Joint(((B, e),), ALWAYS)], ALWAYS)) == []
     assert len(found._values) == jointly.PATIENCE
@@ -131,7 +131,7 @@ def test_a_search_ends_after_its_episodes() -> None:
     assert len(found._values) == 1 + jointly.EPISODES // 2
 
 
-def test_a_trial_that_seems_best_runs_on_a_second_seed() -> None:
+def test_best_trial_runs_on_a_second_seed() -> None:
     seeds: list[tuple[str, int]] = []
     selection, trials, goal = world({})
 
@@ -155,7 +155,7 @@ def test_steps_are_rounded_to_three_digits() -> None:
     assert Jointly._rounded(Joint(((A, 1.23456), (B, 0.0012345)), ALWAYS)).parts == ((A, 1.23), (B, 0.00123))
 
 
-def test_proposals_change_at_most_three_constants_of_a_start_within_the_range() -> None:
+def test_proposals_change_three_constants_at_most() -> None:
     found, _ = search({})
     found._often = np.ones(6)
     starts = np.array([[0.0] * 6, [2.9, -2.9, 0.0, 0.0, 0.0, 1.0]])
@@ -171,21 +171,21 @@ def test_proposals_change_at_most_three_constants_of_a_start_within_the_range() 
     assert np.quantile(near, 0.95) > 0.8  # small, medium and large changes
 
 
-def test_constants_that_have_no_effect_alone_are_moved_less_often() -> None:
+def test_ineffective_constants_move_less_often() -> None:
     found, _ = search({}, hidden=1)
     assert found._often.tolist() == [1.0, 1.0, jointly.SELDOM]
     moved = (found._proposals(np.zeros((1, 3))) != 0).mean(axis=0)
     assert moved[2] < 0.75 * min(moved[:2])
 
 
-def test_the_starts_are_the_best_points_that_are_far_apart() -> None:
+def test_starts_are_good_points_far_apart() -> None:
     points = np.array([[0.0, 0.0], [0.1, 0.19], [0.2, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]])
     values = np.array([5.0, 9.0, 4.0, 3.0, 2.0, 1.0])
     assert jointly._best_apart(points, values).tolist() == [[0.1, 0.19], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]
     assert jointly._best_apart(points, -values).tolist() == [[3.0, 3.0], [2.0, 2.0], [1.0, 1.0], [0.2, 0.0]]
 
 
-def test_the_constants_to_move_are_sorted_by_kind_and_effect_and_cut() -> None:
+def test_constants_to_move_are_sorted_and_cut() -> None:
     gains = Gains(0.1)
     named = [Unit((operand(line, f"N{line}"),)) for line in range(10, 20)]
     literals = [Unit((replace(one.operands[0], definition=one.operands[0].span),)) for one in named[:3]]
@@ -201,7 +201,7 @@ def test_the_constants_to_move_are_sorted_by_kind_and_effect_and_cut() -> None:
     assert (chosen, hidden) == ([named[5], named[4], literals[0], named[6], named[7]], 2)
 
 
-def test_each_constant_moves_on_the_scale_on_which_it_gained_most() -> None:
+def test_constant_moves_on_its_best_scale() -> None:
     gains, half = Gains(0.1), operand(3, "HALF", 0.5)
     plain, share = Unit((half,)), Unit((half,), SHARE)
     gains.enter((plain, ALWAYS), 2.2, 1.0)

@@ -76,7 +76,7 @@ def test_best_law_is_adjusted_first() -> None:
     assert len({*trials.labels[:4]}) == 4
 
 
-def test_an_exponent_that_is_too_large_for_hard_missions_is_reduced() -> None:
+def test_large_exponent_is_reduced_for_hard_missions() -> None:
     def hard(candidate: Candidate, seed: int) -> Outcome:
         power = max(float(one.value) for one in candidate.mutations)
         return Outcome(0.0 if seed == 4 and power > 1.6 else min(10.0, 6.0 + 2.2 * power), True)

@@ -64,7 +64,7 @@ def test_half_of_the_choices_explore_untried_mutations() -> None:
     assert made.generator.ranges == [2]  # type: ignore[attr-defined]
 
 
-def test_the_best_known_mutation_is_chosen_unless_the_search_explores() -> None:
+def test_best_mutation_is_exploited() -> None:
     made = learner(3, 0.5, 0.2)
     made.seen = {0: [1.0, 3.0], 2: [1.5]}
     assert made._choose(0) == 0
@@ -80,7 +80,7 @@ def test_before_the_first_result_a_choice_is_random() -> None:
     assert learner(4, 0.5, 3)._choose(0) == 3
 
 
-def test_once_all_mutations_were_tried_one_draw_decides_to_exploit() -> None:
+def test_one_draw_decides_to_exploit() -> None:
     made = learner(2, 0.9)
     made.seen = {0: [1.0], 1: [2.0]}
     assert made._choose(0) == 1
@@ -99,7 +99,7 @@ def test_values_are_learned_by_sarsa() -> None:
     assert made.q == pytest.approx({(0, 1): 4.6, (1, 0): 2.3})
 
 
-def test_a_mutation_that_cannot_be_written_counts_as_the_worst_episode() -> None:
+def test_unwritable_mutation_is_worst() -> None:
     made = learner(1, 0.5, 0, 0.9, totals=[RepairError("no"), BudgetSpentError()])
     made.seeds = (1, 2)
     made._learn()
@@ -127,7 +127,7 @@ def test_single_check_has_the_clopper_pearson_bound(look: int, tolerated: float)
         assert found == NEVER
 
 
-def test_all_checks_together_accept_wrongly_with_at_most_the_stated_risk() -> None:
+def test_checks_together_keep_the_risk() -> None:
     looks, tolerated, risk = (4, 8), 0.5, 0.2
     first, second = acceptance_numbers(looks, tolerated, risk)
     risks = {}
@@ -152,7 +152,7 @@ def test_main_effects_equal_the_results_of_ridge_regression() -> None:
     assert main_effects(np.ones((2, 1)), np.array([3.0, 6.0])).tolist() == [3.0]
 
 
-def test_constants_are_screened_and_split_into_blocks_only_if_there_are_many() -> None:
+def test_many_constants_are_split_into_blocks() -> None:
     many: Any = list(range(MANY + 1))
     assert worth_screening(many) is True
     assert worth_screening(many[:-1]) is False
@@ -185,7 +185,7 @@ def test_the_next_factors_lie_halfway_to_the_neighbours(
     assert between(gains, wanted) == factors
 
 
-def test_halving_confirms_a_candidate_on_the_seeds_after_the_first() -> None:
+def test_halving_confirms_on_later_seeds() -> None:
     """All changes ran on the first seed and were chosen by it, so only the next seeds are independent evidence."""
     ran: list[int] = []
 

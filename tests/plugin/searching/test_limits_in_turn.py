@@ -61,7 +61,7 @@ def factors(found: Candidate | None) -> dict[Operand, float]:
     return {one.operand: float(one.value) for one in found.mutations} if found is not None else {}
 
 
-def test_limits_are_relaxed_in_the_order_in_which_they_stop_the_mission() -> None:
+def test_limits_are_relaxed_in_mission_order() -> None:
     found, trials = relaxed(Capper(*LIMITS))
     assert factors(found) == dict.fromkeys(LIMITS, 2.2)
     assert trials.spent < EPISODES
@@ -92,7 +92,7 @@ def test_combinations_have_limited_factors_and_parts() -> None:
     assert relaxed(Capper(*LIMITS, REST[0]))[0] is None
 
 
-def test_a_change_after_which_missions_last_longer_can_be_the_first_part() -> None:
+def test_longer_missions_can_start_a_combination() -> None:
     """The unrepaired mission reaches no limit, because it fails for another reason before."""
 
     class Torn(Capper):
@@ -113,7 +113,7 @@ def test_limits_that_are_not_searched_are_left_out() -> None:
     assert relaxed(Capper(other))[0] is None
 
 
-def test_a_world_full_of_limits_costs_a_fixed_number_of_episodes() -> None:
+def test_many_limits_cost_a_fixed_number_of_episodes() -> None:
     world, steps = Capper(TURNS), iter(range(20, 999))
     world.run = lambda *_: Outcome(0.0, False, steps=next(steps))  # type: ignore[method-assign]
     world.reached = lambda candidate: [(one, 2.2) for one in LIMITS]  # type: ignore[method-assign]
@@ -132,7 +132,7 @@ def test_the_sweep_relaxes_limits_before_it_tries_further_steps() -> None:
     assert trials.spent < 40
 
 
-def test_the_sweep_asks_for_no_limits_if_a_constant_gains_much() -> None:
+def test_sweep_skips_limits_after_a_large_gain() -> None:
     world = Capper(TURNS)
     trials = Trials(world.run, 300)
     found = next(

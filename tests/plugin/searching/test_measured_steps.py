@@ -50,7 +50,7 @@ def test_constants_that_must_change_together_are_suggested_together() -> None:
     assert trials.spent < 40
 
 
-def test_suggestions_are_requested_only_once_and_only_if_they_are_needed() -> None:
+def test_suggestions_are_requested_once() -> None:
     assert searched({NAMES[5]: 17.0}, [])[2] == 1
     assert searched({NAMES[0]: 2.2}, [])[2] == 0
 

@@ -26,9 +26,7 @@ from tests.plugin.searching.test_search import operand
         (Unit((replace(operand(3, "True", 1.0), value=True),)), 0.0, False),
     ],
 )
-def test_a_change_counts_as_extreme_if_its_factor_is_at_least_eight(
-    unit: Unit, factor: float, expected: bool
-) -> None:
+def test_eightfold_change_is_extreme(unit: Unit, factor: float, expected: bool) -> None:
     assert extreme(unit, factor) is expected
 
 

@@ -33,7 +33,7 @@ def tries(best: float, width: float, finer: list[Operand], proposed: bool = True
     return Attempts((UNIT,), mutations, (ALWAYS,), trials, GOAL, proposed=proposed, finer=finer.append)
 
 
-def test_a_value_that_earns_nearly_enough_is_adjusted_at_once() -> None:
+def test_nearly_sufficient_value_is_adjusted_at_once() -> None:
     finer: list[Operand] = []
     search = tries(2.5, 0.15, finer)  # 2.2 earns 9.27
     (found,) = search.attempt(UNIT, ALWAYS, 2.2, 0)
@@ -75,9 +75,7 @@ def test_each_constant_is_adjusted_only_once() -> None:
         ({2.1: 13.0, 2.3: 13.0}, True),  # no other step lies between these
     ],
 )
-def test_a_constant_is_adjusted_only_between_two_close_values_that_earn_less(
-    known: dict[float, float], adjusted: bool
-) -> None:
+def test_constant_is_adjusted_between_close_values(known: dict[float, float], adjusted: bool) -> None:
     finer: list[Operand] = []
     search = tries(2.5, 0.15, finer, proposed=False)
     for factor, gain in known.items():

@@ -13,7 +13,7 @@ from pytest_tarl.searching.nearest import nearest
 
 @pytest.mark.parametrize("factor", [0.4, 0.82, 1.22, 2.2, 5.0])
 @pytest.mark.parametrize("power", [0.3, 0.6, 0.8, 1.0, 1.2, 1.6])
-def test_the_minimum_of_a_deviation_that_grows_linearly_is_found(factor: float, power: float) -> None:
+def test_minimum_of_a_linear_deviation_is_found(factor: float, power: float) -> None:
     true, asked = factor**power, list[float]()
 
     def deviation(one: float) -> float:
@@ -30,7 +30,7 @@ def test_the_minimum_of_a_deviation_that_grows_linearly_is_found(factor: float, 
     st.floats(0.05, 0.9) | st.floats(1.1, 20.0),
     st.lists(st.floats(0.0, 5.0) | st.sampled_from([0.0, inf]), min_size=5, max_size=5),
 )
-def test_the_result_is_the_best_of_at_most_five_factors(factor: float, values: list[float]) -> None:
+def test_best_of_five_factors_is_returned(factor: float, values: list[float]) -> None:
     asked: dict[float, float] = {}
 
     def deviation(one: float) -> float:

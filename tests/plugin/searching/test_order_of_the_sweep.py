@@ -94,7 +94,7 @@ def test_a_boolean_is_flipped_once() -> None:
     assert tried(dead, [FLAG]) == ["True=0"]
 
 
-def test_constants_that_change_the_reward_get_moderate_steps_before_other_constants_begin() -> None:
+def test_effective_constants_get_moderate_steps_first() -> None:
     found = tried(lambda changes: -float(A in changes), [LITERAL, A])
     assert found[:5] == ["A=2.2", "A=0.4", "A=1.5", "A=0.65", "3.0=6.6"]
 
@@ -172,19 +172,19 @@ def test_conditional_search_keeps_the_condition() -> None:
     assert all(words.endswith("|") for words in found)
 
 
-def test_constants_in_no_data_flow_come_after_all_other_constants_failed() -> None:
+def test_constants_outside_flows_come_last() -> None:
     found = tried(dead, [A], late=[LITERAL], aside=[B])
     assert found[:2] == ["A=2.2", "A=0.4"]
     first = {name: next(at for at, one in enumerate(found) if one.startswith(name)) for name in "AB3"}
     assert first["A"] < first["B"] < first["3"]
 
 
-def test_constants_that_were_set_aside_come_before_the_steps_of_a_plateau() -> None:
+def test_set_aside_constants_come_before_plateau_steps() -> None:
     found = tried(lambda changes: -0.5 * float(A in changes), [A], aside=[B])
     assert found.index("A=5") < found.index("B=2.2") < found.index("A=1.22")
 
 
-def test_the_last_steps_are_reserved_for_the_structural_changes_that_follow() -> None:
+def test_last_steps_are_reserved_for_structures() -> None:
     found = tried(lambda changes: -3.0 * float(A in changes), [A, LITERAL], structure_follows=True)
     assert "A=10" not in found
     assert "3.0=30" not in found
@@ -195,13 +195,13 @@ def test_a_proposal_is_first_tried_with_its_own_value() -> None:
     assert tried(lambda _: -0.5, [LITERAL], proposed=True)[:4] == ["3.0=3", "3.0=-3", "3.0=6.6", "3.0=1.2"]
 
 
-def test_a_proposal_without_an_effect_is_made_stronger_only_where_constants_responded() -> None:
+def test_weak_proposal_is_strengthened_at_responding_constants() -> None:
     stays = tried(dead, [LITERAL], proposed=True, responding=[str(LITERAL.site)])
     assert stays[:5] == ["3.0=3", "3.0=6.6", "3.0=1.2", "3.0=15", "3.0=0.45"]
     assert "3.0=15" not in tried(dead, [LITERAL], proposed=True)[:5]
 
 
-def test_a_factor_that_makes_a_proposal_without_an_effect_weaker_is_skipped() -> None:
+def test_weakening_factor_is_skipped() -> None:
     found = tried(dead, [LITERAL], proposed=True, weaker=lambda _, factor: factor < 1.0)
     assert found[:2] == ["3.0=3", "3.0=6.6"]
     assert not [one for one in found if one in ("3.0=1.2", "3.0=0.45", "3.0=1.95", "3.0=0.15", "3.0=-3")]
@@ -230,7 +230,7 @@ def test_unwritable_constant_is_skipped() -> None:
     assert found.count("A=2.2") == 1
 
 
-def test_the_function_interlude_is_called_with_the_largest_gain_before_each_step() -> None:
+def test_interlude_gets_the_largest_gain_before_each_step() -> None:
     heard: list[float] = []
 
     def interlude(gain: float) -> Iterator[Candidate]:
@@ -252,14 +252,14 @@ def test_the_interlude_may_yield_candidates_of_another_search() -> None:
     assert seen == []
 
 
-def test_a_candidate_that_the_sweep_confirms_on_further_seeds_is_yielded_once() -> None:
+def test_confirmed_candidate_is_yielded_once() -> None:
     search, seen = sweeping(lambda changes: 10.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL])
     found = list(search.candidates())
     assert [one.mutations[0].value for one in found] == [6.6]
     assert seen[:4] == [("3.0=6.6", 0), ("3.0=6.6", 1), ("3.0=6.6", 2), ("3.0=6.6", 3)]
 
 
-def test_a_yielded_change_counts_as_refused_when_the_search_continues() -> None:
+def test_yielded_change_counts_as_refused_afterwards() -> None:
     search, _ = sweeping(lambda changes: 10.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL])
     (unit,) = units([LITERAL])
     found = search.attempts.attempt(unit, ALWAYS, 2.2, 0)
@@ -269,7 +269,7 @@ def test_a_yielded_change_counts_as_refused_when_the_search_continues() -> None:
     assert search.attempts.refused == {(unit, ALWAYS)}
 
 
-def test_a_change_that_loses_missions_of_refused_changes_counts_as_refused() -> None:
+def test_change_with_known_losses_counts_as_refused() -> None:
     search, _ = sweeping(lambda changes: 10.0, [LITERAL])
     search.attempts.trials.loses = lambda _: True
     (unit,) = units([LITERAL])
@@ -290,25 +290,25 @@ def announced(operands: Sequence[Operand]) -> list[list[tuple[float, int]]]:
     return heard
 
 
-def test_the_remaining_runs_of_a_step_are_announced_before_each_run() -> None:
+def test_remaining_runs_of_a_step_are_announced() -> None:
     heard = announced([LITERAL, ZERO])
     assert heard[:2] == [[(6.6, 0), (1.2, 0)], [(1.2, 0)]]
     assert heard[2:4] == [[(pytest.approx(1.2), 1), (-1.5, 1)], [(-1.5, 1)]]
 
 
-def test_a_step_announces_nothing_that_was_tried_or_cannot_change() -> None:
+def test_tried_changes_are_not_announced() -> None:
     heard = announced([FLAG, LITERAL])
     assert [len(one) for one in heard[:2]] == [2, 1]
     assert all(value != 0 for step in heard[2:] for value, _ in step)
 
 
-def test_a_zero_with_its_own_scale_has_no_other_steps() -> None:
+def test_zero_with_a_scale_has_no_other_steps() -> None:
     found = tried(dead, [ZERO], charts={ZERO: SHARE})
     assert len(found) == len(set(found))
     assert all(-1.0 <= float(one.partition("=")[2]) <= 1.0 for one in found)
 
 
-def test_the_effect_of_a_statement_is_the_effect_of_its_best_factor() -> None:
+def test_statement_effect_is_its_best_factor() -> None:
     search, _ = sweeping(lambda changes: 3.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL, A])
     list(search.candidates())
     effects = search.effects()
@@ -329,7 +329,7 @@ def test_change_stays_open_while_it_may_be_confirmed() -> None:
     assert seen[:2] == [("3.0=6.6", 1), ("3.0=9", 1)]
 
 
-def test_a_change_that_misses_the_goal_is_neither_confirmed_nor_tried_again() -> None:
+def test_failed_change_is_not_tried_again() -> None:
     search, seen = sweeping(lambda changes: 4.0, [LITERAL])
     (unit,) = units([LITERAL])
     assert not search.attempts.reaches(unit, 2.2, ALWAYS, 1)
@@ -339,7 +339,7 @@ def test_a_change_that_misses_the_goal_is_neither_confirmed_nor_tried_again() ->
     assert search.attempts.gains.of(unit, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 1.5: 4.0}
 
 
-def test_a_change_without_an_effect_neither_reaches_the_goal_nor_is_confirmed() -> None:
+def test_ineffective_change_is_never_confirmed() -> None:
     search, seen = sweeping(lambda changes: 10.0, [LITERAL])
     (unit,) = units([LITERAL])
     assert not search.attempts.reaches(unit, 1.0, ALWAYS, 0)

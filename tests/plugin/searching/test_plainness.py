@@ -117,7 +117,7 @@ def restoring(
     )
 
 
-def test_a_factor_is_tried_before_an_offset_that_also_succeeds() -> None:
+def test_factor_is_tried_before_an_offset() -> None:
     found = restoring({OFFSET: 2.2, NAMED: 0.42}, window=0.2).candidates()
     assert next(found).mutations[0].operand == NAMED
 
@@ -138,7 +138,7 @@ def test_named_constant_of_a_helper_comes_before_a_literal() -> None:
     assert second.mutations[0].operand == INNER
 
 
-def test_an_offset_is_accepted_after_few_runs_if_no_plainer_change_succeeds() -> None:
+def test_offset_is_accepted_early_without_alternatives() -> None:
     search = restoring({OFFSET: 2.2}, window=0.2)
     assert next(search.candidates()).mutations[0].operand == OFFSET
     assert search.attempts.trials.spent < 30
@@ -189,9 +189,7 @@ CHARTED = Unit(TRIM.operands, offset(0.5))
         ((Unit(LIMIT.operands, SHARE),), []),
     ],
 )
-def test_an_offset_moves_other_constants_of_its_statement_named_zeros_first(
-    units: tuple[Unit, ...], expected: list[tuple[Unit, float]]
-) -> None:
+def test_offset_moves_named_zeros_first(units: tuple[Unit, ...], expected: list[tuple[Unit, float]]) -> None:
     found = instead_of_offset(Candidate((Mutation(OFFSET, 12.0),), ALWAYS), units)
     assert [unit for unit, _ in found] == [unit for unit, _ in expected]
     assert [step for _, step in found] == pytest.approx([step for _, step in expected])
@@ -203,7 +201,7 @@ def test_only_a_single_offset_is_moved_to_other_constants() -> None:
     assert instead_of_offset(Candidate((Mutation(INNER, 5.0),), ALWAYS), [LIMIT]) == []
 
 
-def test_a_threshold_moves_by_the_offset_that_has_the_same_effect() -> None:
+def test_threshold_moves_by_an_equivalent_offset() -> None:
     limit, since = (
         operand(3, "24.0", 24.0),
         replace(operand(3, "since", 0.0), definition=operand(1, "0.0", 0.0).span),

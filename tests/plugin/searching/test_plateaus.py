@@ -36,7 +36,7 @@ def searched(low: float, high: float, steps: int | None) -> tuple[Candidate | No
     return found, trials.spent
 
 
-def test_constants_that_change_failed_missions_get_small_steps_before_other_constants() -> None:
+def test_constants_of_failed_missions_get_small_steps_first() -> None:
     found, spent = searched(1.4, 1.8, STEPS)
     blind, more = searched(1.4, 1.8, None)
     assert found is not None
@@ -52,7 +52,7 @@ def test_steps_become_smaller_as_long_as_nothing_gains() -> None:
     assert spent <= 2 * (len(INERT) + 1) + 12
 
 
-def test_a_proposal_without_effect_is_made_stronger_before_other_proposals_are_moved() -> None:
+def test_weak_proposal_is_strengthened_first() -> None:
     """With a limit of 1 nothing changes and with a limit of 0.4 missions succeed; other values lose reward."""
     tried: list[tuple[object, float]] = []
 
@@ -84,7 +84,7 @@ def test_constants_get_ever_larger_steps_until_one_constant_gains() -> None:
     assert {one.operand for one in found.mutations} == {RIGHT}
 
 
-def test_a_proposal_without_effect_is_strengthened_further_in_places_where_constants_gained() -> None:
+def test_weak_proposal_is_strengthened_where_constants_gained() -> None:
     """Only a limit of 0.15 has an effect; elsewhere proposals without an effect are dropped after 0.4."""
     tried: list[tuple[Operand, float]] = []
 

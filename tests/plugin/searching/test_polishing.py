@@ -34,7 +34,7 @@ def test_polishing_moves_factors_to_the_best_values_nearby(begin: Factors) -> No
     assert all(one == pytest.approx(best, rel=0.08) for one, best in zip(found, BEST, strict=True))
 
 
-def test_polishing_leaves_the_best_factors_and_factors_that_always_fail_unchanged() -> None:
+def test_polishing_leaves_the_best_factors() -> None:
     assert polished(BEST, earned, range(8), 17.0) == BEST
     assert polished((6.0, 1.5), earned, range(8), 17.0) == (6.0, 1.5)
 
@@ -110,7 +110,7 @@ def test_nearly_sufficient_pair_is_adjusted() -> None:
     assert not list(search.gain(Joint(((GRIP, 0.8), (ANGLE, 1.5)), ALWAYS)))  # each combination only once
 
 
-def test_a_pair_that_barely_earns_enough_is_adjusted_after_its_refusal() -> None:
+def test_barely_sufficient_pair_is_adjusted() -> None:
     first, better = list(selection().gain(Joint(((GRIP, 0.66), (ANGLE, 1.5)), ALWAYS)))
     assert first.mutations[0].value == 0.66
     assert better.mutations[0].value == pytest.approx(0.6, rel=0.08)
@@ -122,7 +122,7 @@ def test_refused_harmful_pair_is_not_adjusted() -> None:
     assert len(list(search.gain(Joint(((GRIP, 0.66), (ANGLE, 1.5)), ALWAYS)))) == 1
 
 
-def test_two_constants_that_gain_more_than_needed_are_not_adjusted_when_refused() -> None:
+def test_more_than_sufficient_pair_is_not_adjusted() -> None:
     assert len(list(selection().gain(Joint(((GRIP, 0.61), (ANGLE, 1.5)), ALWAYS)))) == 1
 
 

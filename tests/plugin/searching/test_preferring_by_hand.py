@@ -138,7 +138,7 @@ def test_two_named_constants_come_before_a_literal() -> None:
     assert {pair for *_, pair in search.log} == {3}
 
 
-def test_larger_steps_are_only_for_constants_whose_smaller_step_lost_no_reward() -> None:
+def test_larger_steps_need_a_harmless_smaller_step() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         (one,) = candidate.mutations
         return Outcome(-1.5 if one.operand.code == "A" and one.value == 2.2 else 0.0, False)
@@ -148,19 +148,19 @@ def test_larger_steps_are_only_for_constants_whose_smaller_step_lost_no_reward()
     assert search.tries[4:] == [("B", 5.0), ("A", 0.15), ("B", 0.15)]
 
 
-def test_a_named_constant_is_not_compared_with_larger_steps_of_other_constants() -> None:
+def test_named_constant_is_not_compared_with_larger_steps() -> None:
     search = Scripted([A, B, C], proposed=True)
     assert before(search, A, 2.2) == []
     assert search.log == []
 
 
-def test_an_offset_is_compared_with_all_constants_that_can_be_scaled() -> None:
+def test_offset_is_compared_with_scalable_constants() -> None:
     search = Scripted([ZERO, LITERAL, A, B, C], proposed=True)
     before(search, ZERO, 2.2)
     assert search.tries == [(one, step) for one in ("A", "B", "C", "1.5") for step in (2.2, 0.4)]
 
 
-def test_constants_that_were_tried_before_are_only_refined_if_they_gained_much() -> None:
+def test_known_constants_are_refined_after_a_large_gain() -> None:
     search = Scripted([ZERO, A, B, C], proposed=True)
     for unit, gain in ((A, 3.9), (B, 4.0), (C, 7.0)):
         search.gains.enter((unit, ALWAYS), 2.2, gain)
@@ -169,7 +169,7 @@ def test_constants_that_were_tried_before_are_only_refined_if_they_gained_much()
 
 
 @pytest.mark.parametrize(("offset", "refined"), [(True, 2), (False, 0)])
-def test_a_refused_constant_is_refined_again_only_in_place_of_an_offset(offset: bool, refined: int) -> None:
+def test_refused_constant_may_replace_an_offset(offset: bool, refined: int) -> None:
     found = ZERO if offset else LITERAL
     search = Scripted([found, A], proposed=True)
     search.gains.enter((A, ALWAYS), 5.0, 7.0)
@@ -185,7 +185,7 @@ def test_the_search_for_plainer_changes_ends_after_twelve_episodes() -> None:
     assert search.trials.spent - 1 == PLAINER == len(search.log)
 
 
-def test_trying_larger_steps_of_other_constants_takes_at_most_twelve_episodes() -> None:
+def test_larger_steps_take_twelve_episodes_at_most() -> None:
     many = [Unit((constant(line, f"N{line}"),)) for line in range(20, 40)]
     search = Scripted([LITERAL, *many], proposed=True)
     for unit in many:
@@ -212,7 +212,7 @@ def test_unreadable_sensor_gives_no_condition() -> None:
     assert search.of("between") == []
 
 
-def test_before_a_change_that_was_not_confirmed_no_other_constants_are_tried() -> None:
+def test_unconfirmed_change_gets_no_alternatives() -> None:
     search = Scripted([ZERO, LITERAL, A, B])
     assert before(search, ZERO, 2.2, holds=False) == []
     assert before(search, ZERO, 2.2, holds=False, near=False) == []
@@ -313,7 +313,7 @@ def test_value_at_the_edge_is_set_aside() -> None:
     assert list(made.after()) == []
 
 
-def test_a_value_is_set_aside_if_a_nearer_value_cannot_be_written() -> None:
+def test_value_is_set_aside_without_a_writable_neighbour() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         if candidate.mutations[0].value < 1.45:
             raise RepairError("no place")
@@ -324,7 +324,7 @@ def test_a_value_is_set_aside_if_a_nearer_value_cannot_be_written() -> None:
 
 
 @pytest.mark.parametrize(("lost", "preferred"), [(0.09, True), (0.11, False)])
-def test_a_milder_value_may_lose_one_percent_of_the_wanted_gain(lost: float, preferred: bool) -> None:
+def test_milder_value_may_lose_one_percent(lost: float, preferred: bool) -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         return Outcome(10.0 if candidate.mutations[0].value > 2.0 else 10.0 - lost, True)
 
@@ -341,7 +341,7 @@ def test_no_milder_value_is_tried_for_a_proposed_change() -> None:
 # smaller changes of other constants
 
 
-def test_a_small_change_of_another_constant_comes_first_and_is_then_refused() -> None:
+def test_small_change_of_another_constant_is_refined() -> None:
     search = Scripted([A, B], window((A, 2.0, 9.0), (B, 1.1, 1.4)), [(B, 1.22)])
     search.gains.enter((A, ALWAYS), 2.2, 10.0)
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
@@ -380,7 +380,7 @@ def test_nearly_sufficient_small_step_is_moved_a_little(
     assert search.tries[: 2 + len(beside)] == [("B", 0.82), *beside, ("B", 1.22)]
 
 
-def test_a_small_step_that_cannot_be_written_is_not_moved() -> None:
+def test_unwritable_small_step_is_not_moved() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         if candidate.mutations[0].operand.code == "B":
             raise RepairError("no place")
@@ -408,7 +408,7 @@ def test_small_change_with_different_missions_is_set_aside() -> None:
 
 
 @pytest.mark.parametrize(("spent", "tried"), [(30, True), (31, False)])
-def test_smaller_changes_are_looked_for_in_the_first_half_of_the_budget(spent: int, tried: bool) -> None:
+def test_smaller_changes_are_sought_early(spent: int, tried: bool) -> None:
     search = Scripted([A, B], budget=60)
     search.gains.enter((A, ALWAYS), 1.5, 0.0)
     for _ in range(spent - 1):
@@ -417,7 +417,7 @@ def test_smaller_changes_are_looked_for_in_the_first_half_of_the_budget(spent: i
     assert bool(search.log) is tried
 
 
-def test_smaller_changes_are_looked_for_once_if_there_were_any() -> None:
+def test_smaller_changes_are_sought_once() -> None:
     search = Scripted([A, B])
     for factor in (1.05, 1.5):
         search.gains.enter((A, ALWAYS), factor, 0.0)
@@ -431,7 +431,7 @@ def test_smaller_changes_are_looked_for_once_if_there_were_any() -> None:
     assert search.tries == [("B", 0.82), ("B", 1.22)]
 
 
-def test_small_steps_end_after_their_episodes_and_skip_refused_constants() -> None:
+def test_small_steps_skip_refused_constants() -> None:
     many = [Unit((constant(line, f"N{line}"),)) for line in range(20, 26)]
 
     def run(candidate: Candidate, _: int) -> Outcome:
@@ -548,7 +548,7 @@ def test_constants_of_at_most_two_functions_are_compared() -> None:
     assert FUNCTIONS == 2
 
 
-def test_the_exact_value_of_the_constant_is_tried_before_any_alternative_constant() -> None:
+def test_exact_value_is_tried_before_alternatives() -> None:
     def run(candidate: Candidate, _: int) -> Outcome:
         (one,) = candidate.mutations
         late = min(abs(one.value - 1.6246), 1.0)

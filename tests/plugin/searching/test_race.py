@@ -22,7 +22,7 @@ def arms(*factors: float) -> list[Arm]:
     return [Arm(unit, factor, ALWAYS) for factor in factors]
 
 
-def test_all_changes_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
+def test_all_changes_run_on_the_same_seeds() -> None:
     ran: list[tuple[float, int]] = []
 
     def counted(candidate: Candidate, seed: int) -> object:
@@ -36,14 +36,14 @@ def test_all_changes_run_on_the_same_seeds_and_no_seed_is_repeated() -> None:
     assert set(race.gains[arms(2.2)[0]]) == {pair.seed for pair in PAIRS[:4]}
 
 
-def test_gains_are_paired_so_that_noise_of_a_seed_cancels() -> None:
-    race = Race(mutations, Trials(run, 100), GOAL)
+def test_paired_gains_cancel_seed_noise() -> None:
+    race = Race(mutations, Trials(run, 100), PAIRS)
     race.run(arms(2.0), 5)
     assert race.gains[arms(2.0)[0]] == pytest.approx(dict.fromkeys(range(5), 6 * math.log(2.0)))
 
 
-def test_refinement_adds_factors_between_neighbouring_factors_down_to_the_finest_ratio() -> None:
-    race = Race(mutations, Trials(run, 100), GOAL)
+def test_refinement_adds_factors_in_between() -> None:
+    race = Race(mutations, Trials(run, 100), PAIRS)
     race.run(arms(1.5, 2.4, 5.0), 1)
     assert [arm.factor for arm in race.around(arms(2.4)[0])] == [round(math.sqrt(1.5 * 2.4), 3), 3.464]
     race.run(arms(2.41), 1)
@@ -78,7 +78,7 @@ def test_halving_spends_its_later_rounds_on_changes_that_gain() -> None:
     assert ran.count(GAIN) > 2 * ran.count(LIMIT)
 
 
-def test_the_full_ranking_reports_how_certain_its_first_place_is() -> None:
+def test_full_ranking_reports_its_certainty() -> None:
     ranking = Ranking(OPERANDS, mutations, ALWAYS, Trials(run, 300), GOAL)
     ranking.run()
     assert ranking.whole

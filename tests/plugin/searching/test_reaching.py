@@ -31,7 +31,7 @@ def trials(total: float, designed: float | None, passed: bool = True) -> Trials:
         (6.9, 6.9, False, 0),  # lacks more
     ],
 )
-def test_a_near_miss_is_compared_with_the_designed_mission_of_its_seed(
+def test_near_miss_is_compared_with_its_designed_mission(
     total: float, designed: float, expected: bool, beside: int
 ) -> None:
     ran = trials(total, designed)

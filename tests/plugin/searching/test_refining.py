@@ -40,7 +40,7 @@ def test_the_next_factors_lie_halfway_to_the_neighbours(
     assert between(gains, wanted=10.0) == pytest.approx(expected, abs=0.002)
 
 
-def test_uses_of_one_constant_that_act_alike_are_tried_once() -> None:
+def test_similar_uses_are_tried_once() -> None:
     definition = operand(40, "SPEED", 2.0).span
     passed, used = (Unit((replace(operand(line, "speed", 2.0), definition=definition),)) for line in (3, 4))
     other = Unit((replace(operand(5, "speed", 2.0), definition=operand(41, "SPEED", 2.0).span),))

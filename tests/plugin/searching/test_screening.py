@@ -21,7 +21,7 @@ from tests.plugin.searching.test_forward_selection import operand
 GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.0, online=0.0)
 
 
-def test_main_effects_are_separated_although_several_constants_change_at_once() -> None:
+def test_screening_separates_main_effects() -> None:
     draws = np.random.default_rng(3)
     design = (draws.random((60, 20)) < 0.2).astype(float)
     effects = main_effects(design, design @ np.eye(20)[7] * 5.0)
@@ -52,7 +52,7 @@ def test_screening_runs_grow_more_slowly_than_constants(many: int, most: int) ->
     assert trials.spent < most
 
 
-def test_a_run_that_holds_by_chance_is_yielded_without_unneeded_parts() -> None:
+def test_lucky_run_loses_unneeded_parts() -> None:
     gains = [operand(line, "1.0", 1.0) for line in range(50)]
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -65,7 +65,7 @@ def test_a_run_that_holds_by_chance_is_yielded_without_unneeded_parts() -> None:
     assert {m.operand for candidate in found for m in candidate.mutations} <= {gains[20]}
 
 
-def test_a_change_found_in_a_screening_is_compared_with_named_constants() -> None:
+def test_screened_change_is_compared_with_named_constants() -> None:
     """Scaling a literal and lowering the threshold in the next line have the same effect; the threshold has a name."""
     literals = [operand(line, "1.0", 1.0) for line in range(0, 120, 2)]
     scale = literals[30]
@@ -102,7 +102,7 @@ def test_named_constants_are_tried_before_a_screening() -> None:
     assert not any("→" in label for label in trials.labels)
 
 
-def test_literals_are_screened_without_the_named_constants_that_were_tried_before() -> None:
+def test_literals_are_screened_without_named_constants() -> None:
     literals = [operand(line, "1.0", 1.0) for line in range(60)]
     names = [operand(line, f"NAME_{line}", 1.0, named=True) for line in range(100, 104)]
 

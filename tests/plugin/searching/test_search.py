@@ -69,7 +69,7 @@ def sweep(trials: Trials) -> Sweep:
     return Sweep(OPERANDS, mutations, (ALWAYS,), trials, GOAL)
 
 
-def test_the_sweep_confirms_the_right_gain_and_ranks_it_first() -> None:
+def test_sweep_ranks_the_right_gain_first() -> None:
     trials = Trials(run, 300)
     search = sweep(trials)
     found = next(search.candidates())
@@ -81,7 +81,7 @@ def test_the_sweep_confirms_the_right_gain_and_ranks_it_first() -> None:
     assert best == str(GAIN.site)
 
 
-def test_every_run_is_paired_with_the_unmutated_run_of_its_seed() -> None:
+def test_every_run_is_paired_by_seed() -> None:
     trials = Trials(run, 300)
     search = sweep(trials)
     next(search.candidates())
@@ -161,7 +161,7 @@ def test_candidate_is_dropped_after_poor_first_missions(right: int | None, runs:
     assert trials.spent == runs
 
 
-def test_a_candidate_that_gains_more_than_a_failed_candidate_is_confirmed() -> None:
+def test_better_candidate_is_confirmed() -> None:
     def rising(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(7.0 + float(candidate.mutations[0].value), True)
 
@@ -219,7 +219,7 @@ def test_failed_mission_is_no_near_miss_if_passing_is_required() -> None:
     assert not replace(GOAL, passing=True).reached(failed, 0)
 
 
-def test_an_effect_is_the_mean_over_all_seeds_that_ran() -> None:
+def test_effect_is_the_mean_over_seeds() -> None:
     trials = Trials(run, 300)
     search = sweep(trials)
     found = next(search.candidates())
@@ -292,7 +292,7 @@ def test_a_proposed_value_is_first_tried_unchanged() -> None:
     assert effect.effect == OFFLINE
 
 
-def test_a_failed_mission_ends_the_confirmation_if_designed_missions_succeed() -> None:
+def test_failure_ends_the_confirmation() -> None:
     def once(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(OFFLINE, passed=seed != 1)
 

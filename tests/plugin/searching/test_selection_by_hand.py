@@ -85,7 +85,7 @@ def test_gain_is_the_mean_over_executed_seeds() -> None:
     assert end.value.value is None
 
 
-def test_both_near_factors_are_added_beginning_with_the_better_factor() -> None:
+def test_better_near_factor_is_added_first() -> None:
     gains = {B: {2.2: -1.0, 0.4: 2.0}, C: {2.2: 1.0}}
     search, _ = selection(lambda by, seed: 0.0, gains=gains)
     found = [one.parts[1] for turn in (0, 1) for one in search._with_another(joint((A, 2.2)), turn)]
@@ -133,7 +133,7 @@ def test_a_fixed_parameter_climbs_while_the_gain_increases() -> None:
     assert first(seen) == ["A2.2", "A2.2 B0.9", "A2.2 B1.1", "A2.2 B1.21", "A2.2 B1.331"]
 
 
-def test_a_fixed_parameter_that_climbs_downwards_is_not_moved_up() -> None:
+def test_falling_fixed_parameter_is_not_raised() -> None:
     search, seen = selection(lambda by, _: 5.0 - by.get("B", 1.0))
     list(search.climbed(joint((A, 2.2)), B))
     assert first(seen) == ["A2.2", "A2.2 B0.9", "A2.2 B0.81", "A2.2 B0.729", "A2.2 B0.656"]
@@ -155,7 +155,7 @@ def needs(*names: str) -> Callable[[dict[str, float], int], float]:
     return lambda by, seed: 10.0 if set(names) <= by.keys() else 0.0
 
 
-def test_only_the_parts_that_the_first_seed_needs_are_kept() -> None:
+def test_only_needed_parts_are_kept() -> None:
     search, _ = selection(needs("B"))
     (found,) = search.fewest(joint((A, 1.5), (B, 1.5), (C, 1.5)))
     assert [one.operand.code for one in found.mutations] == ["B"]
@@ -193,7 +193,7 @@ def test_a_confirmed_candidate_is_settled_and_not_tried_again() -> None:
     assert failing in settled.tried
 
 
-def test_a_combination_whose_needed_part_was_found_before_is_not_yielded() -> None:
+def test_combination_with_a_known_part_is_not_yielded() -> None:
     search, _ = selection(needs("A"))
     (alone,) = search.gain(joint((A, 1.5)))
     assert list(search.gain(joint((A, 1.5), (B, 1.5)))) == []
@@ -221,7 +221,7 @@ def test_preferred_change_comes_before_a_single_part() -> None:
 # combinations
 
 
-def test_a_combination_grows_while_each_part_gains_more_than_the_slack() -> None:
+def test_combination_grows_while_parts_gain() -> None:
     def world(by: dict[str, float], _: int) -> float:
         return 2.0 * ("A" in by) + 2.0 * (by.get("B") == 0.4) + 0.9 * ("C" in by)
 
@@ -234,7 +234,7 @@ def test_a_combination_grows_while_each_part_gains_more_than_the_slack() -> None
     assert not any(len(words.split()) > 3 for words in tried)
 
 
-def test_nothing_is_added_to_a_combination_that_was_confirmed_or_cannot_run() -> None:
+def test_confirmed_combination_is_not_extended() -> None:
     search, seen = selection(needs("A"))
     (found,) = search.candidates(joint((A, 2.2)))
     assert found == joint((A, 2.2)).candidate(mutations)
@@ -296,13 +296,13 @@ def test_pair_that_cannot_run_is_not_extended() -> None:
     assert first(seen) == ["A2.2 B2.2"]
 
 
-def test_a_pair_that_suffices_on_the_first_seed_gets_no_third_part() -> None:
+def test_sufficient_pair_gets_no_third_part() -> None:
     search, seen = selection(lambda by, seed: (30.0 if seed == 0 else 5.0) if len(by) > 1 else 0.0)
     list(search.unions([(A, 2.2), (B, 2.2), (C, 2.2)], ALWAYS))
     assert not any(len(words.split()) > 2 for words in first(seen))
 
 
-def test_a_first_part_that_was_confirmed_is_not_combined_with_others() -> None:
+def test_confirmed_part_is_not_combined() -> None:
     search, seen = selection(needs("A"))
     list(search.gain(joint((A, 2.2))))
     before = len(seen)
@@ -333,7 +333,7 @@ def test_an_unchanged_factor_is_not_confirmed() -> None:
 # uses
 
 
-def test_the_search_learns_from_each_use_of_a_confirmed_constant() -> None:
+def test_search_learns_from_each_confirmed_use() -> None:
     one, two = constant(3, "AHEAD"), replace(constant(8, "AHEAD"), definition=constant(3, "AHEAD").definition)
     seen: list[int] = []
 
@@ -419,7 +419,7 @@ def test_gain_is_relative_to_the_unmutated_run() -> None:
     assert seen[4:] == [("A", 2.2, 2)]
 
 
-def test_a_ranked_change_that_cannot_be_written_has_no_gain() -> None:
+def test_unwritable_ranked_change_has_no_gain() -> None:
     def world(name: str, factor: float, seed: int) -> float:
         if name == "A":
             raise RepairError("no place")
@@ -430,7 +430,7 @@ def test_a_ranked_change_that_cannot_be_written_has_no_gain() -> None:
     assert list(race.gains) == [Arm(B, 2.2, ALWAYS)]
 
 
-def test_new_factors_lie_halfway_to_the_neighbouring_factors_under_the_same_condition() -> None:
+def test_new_factors_lie_halfway_to_neighbours() -> None:
     race, _ = racing(lambda name, factor, seed: 0.0)
     for unit, factor, guard in (
         (A, 0.4, ALWAYS),
@@ -451,7 +451,7 @@ def test_new_factors_lie_halfway_to_the_neighbouring_factors_under_the_same_cond
     assert [one.factor for one in race.around(Arm(A, 0.4, ALWAYS))] == [round(sqrt(0.4 * 2.2), 3)]
 
 
-def test_the_effect_of_a_constant_is_the_effect_of_its_best_change() -> None:
+def test_constant_effect_is_that_of_its_best_change() -> None:
     race, _ = racing(lambda name, factor, seed: seed + (factor if name == "A" else -1.0))
     race.run([Arm(A, 2.2, ALWAYS), Arm(A, 5.0, ALWAYS), Arm(A, 0.4, ALWAYS), Arm(B, 2.2, ALWAYS)], 1)
     effects = arm_effects(race)
@@ -478,7 +478,7 @@ def test_halving_keeps_the_better_half() -> None:
     assert later[:3] == [("A", 5.0), ("A", round(sqrt(2.2 * 5.0), 3)), ("A", round(sqrt(50.0), 3))]
 
 
-def test_a_ranking_tries_all_factors_only_on_constants_that_matter() -> None:
+def test_ranking_refines_only_important_constants() -> None:
     seen: list[tuple[str, float, int]] = []
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -518,7 +518,7 @@ def test_best_conditional_constants_are_sorted_by_gain() -> None:
     assert found.best_under([WET]) == []
 
 
-def test_the_best_changes_of_the_statements_are_sorted_by_gain() -> None:
+def test_best_statement_changes_are_sorted_by_gain() -> None:
     found = table((A, 5.0, 2.0), (A, 0.4, 3.0), (B, 2.2, 9.0), (C, 2.2, 0.0))
     assert found.leaders(ALWAYS) == [(9.0, (B, 2.2)), (3.0, (A, 0.4))]
 
@@ -530,7 +530,7 @@ def test_constants_are_ordered_by_their_previous_gain() -> None:
     assert found.leading(2.2, WET, [A, B, C, D], -1.0) == []
 
 
-def test_constants_that_have_no_effect_in_two_tries_are_not_moved_further() -> None:
+def test_ineffective_constants_are_not_moved_further() -> None:
     found = table((A, 2.2, 0.0), (A, 0.4, 0.0), (B, 2.2, 0.0), (C, 2.2, 0.0), (C, 0.4, -1.0))
     assert found.moving([A, B, C, D]) == [B, C, D]
     assert [found.moves(one) for one in (A, B, C, D)] == [False, False, True, False]
@@ -555,7 +555,7 @@ def test_largest_gain_counts_only_above_the_slack() -> None:
     assert found.most((B, ALWAYS)) == 0.0
 
 
-def test_a_proposal_has_no_effect_if_its_own_value_changed_nothing() -> None:
+def test_ineffective_proposal_changed_nothing() -> None:
     found = table((A, 1.0, 0.0), (B, 1.0, 2.0), (C, 2.2, 0.0), proposed=True)
     assert [found.idle(one) for one in (A, B, C, D)] == [True, False, False, False]
     assert not table((A, 1.0, 0.0)).idle(A)
@@ -564,7 +564,7 @@ def test_a_proposal_has_no_effect_if_its_own_value_changed_nothing() -> None:
 # acceptance
 
 
-def test_episodes_of_the_designed_world_are_announced_only_for_new_seeds() -> None:
+def test_designed_episodes_are_announced_for_new_seeds() -> None:
     heard: list[list[int]] = []
 
     def run(seed: int) -> Outcome:
@@ -614,7 +614,7 @@ def test_missions_without_loss_do_not_count_for_the_reserve() -> None:
         trials(joint((A, 2.2)).candidate(mutations), 0)
 
 
-def test_outcomes_of_another_phase_and_of_an_equal_candidate_are_known() -> None:
+def test_outcomes_of_equal_candidates_are_known() -> None:
     one, two = (joint((unit, 2.2)).candidate(mutations) for unit in (A, B))
     trials = Trials(lambda candidate, seed: Outcome(float(seed), False), 9)
     trials(one, 3)

@@ -28,7 +28,7 @@ def factor(candidate: Candidate, of: Operand) -> float:
 
 
 @pytest.mark.parametrize(("rivals", "early"), [(0, True), (FEW - 1, True), (FEW, False)])
-def test_a_few_literals_that_lose_with_all_other_steps_get_small_steps(rivals: int, early: bool) -> None:
+def test_losing_literals_get_small_steps(rivals: int, early: bool) -> None:
     sensitive = OTHERS[:rivals]
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -63,7 +63,7 @@ def order(search: Sweep, many: int) -> list[Operand]:
     return [next(found).mutations[0].operand for _ in range(many)]
 
 
-def test_reducing_another_constant_by_a_sixth_comes_before_doubling_the_constant_found() -> None:
+def test_small_reduction_comes_before_doubling() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     assert order(searched((TARGET, TAU, HOTTEST), windows), 2) == [TARGET, HOTTEST]
     assert order(searched((HOTTEST, TAU, TARGET), windows), 2) == [TARGET, HOTTEST]  # not tried before
@@ -74,13 +74,13 @@ def test_small_change_with_different_missions_is_not_first() -> None:
     assert order(searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE}), 1) == [HOTTEST]
 
 
-def test_a_repair_that_is_found_late_is_not_compared_with_smaller_changes() -> None:
+def test_late_repair_gets_no_smaller_changes() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     late = searched((TARGET, TAU, HOTTEST), windows, budget=15)
     assert order(late, 1) == [HOTTEST]
 
 
-def test_the_search_for_smaller_changes_takes_few_episodes_if_there_is_none() -> None:
+def test_search_for_smaller_changes_is_short() -> None:
     many = tuple(named(at, f"LIMIT_{at}") for at in range(10, 30))
     search = searched((HOTTEST, *many), {HOTTEST: (2.0, 2.4)})
     assert order(search, 1) == [HOTTEST]
@@ -118,7 +118,7 @@ def test_no_halfway_value_beside_a_tried_value() -> None:
     assert milder(Unit((named(3, "SHARE", 0.9),), SHARE), 2.2, {}) is None
 
 
-def test_only_named_constants_that_matter_are_changed_and_by_much_less() -> None:
+def test_only_important_named_constants_change_less() -> None:
     units = [Unit((one,)) for one in (HOTTEST, TARGET, TAU, operand(6, "1.5", 1.5))]
     gains = Gains(0.1)
     for unit, gain in zip(units, (9.0, -1.0, 0.0, 2.0), strict=True):
@@ -129,7 +129,7 @@ def test_only_named_constants_that_matter_are_changed_and_by_much_less() -> None
     assert smaller(units[0], 1.3, units, gains, ALWAYS) == []
 
 
-def test_small_steps_are_tried_on_the_most_promising_constants_only() -> None:
+def test_promising_constants_get_small_steps() -> None:
     found, *units = (Unit((named(at, f"A{at}"),)) for at in range(7, 9 + OTHERS))
     gains = Gains(0.1)
     for at, unit in enumerate(units):
@@ -145,7 +145,7 @@ def test_change_size_is_the_logarithm_of_the_ratio() -> None:
     assert change_size(Unit((share,)), -1.0) == change_size(Unit((named(3, "START", 0.0),)), 2.2) == math.inf
 
 
-def test_a_small_step_that_earns_nearly_enough_is_changed_slightly() -> None:
+def test_nearly_sufficient_small_step_is_adjusted() -> None:
     """Friction is wrong by 29 %: a step of 22 % earns a bit too little, and one of 33 % misses."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -184,7 +184,7 @@ def test_every_confirmed_change_is_examined(seed: int) -> None:
     assert search.attempts._settled.held <= examined
 
 
-def test_a_small_step_that_gains_something_is_followed_by_larger_steps() -> None:
+def test_helpful_small_step_is_enlarged() -> None:
     """The brake is worn by 39 %; a set point seven times as large hides this."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -45,14 +45,14 @@ def trials(totals: Mapping[Candidate, Mapping[int, float]], budget: int = 99) ->
     return made
 
 
-def test_a_candidate_that_acts_like_another_candidate_takes_over_the_missing_outcomes() -> None:
+def test_similar_candidate_takes_over_outcomes() -> None:
     made = trials({ONE: {0: 9.0, 1: 8.0}, TWO: {0: 7.0}})
     made.equate(ONE, TWO)
     assert made.totals_of(TWO, PAIRS) == {0: 7.0, 1: 8.0}
     assert made.spent == 3
 
 
-def test_the_wanted_gain_is_computed_from_the_episodes_that_lost_reward() -> None:
+def test_wanted_gain_comes_from_losing_episodes() -> None:
     assert GOAL.wanted == 9.0 - 1.5
     assert replace(GOAL, harder={0: 2.0, 2: 2.0}).wanted == 8.0 - 1.5
     assert replace(GOAL, pairs=()).wanted == 6.5
@@ -71,7 +71,7 @@ def test_the_wanted_gain_is_computed_from_the_episodes_that_lost_reward() -> Non
         (9.0, True, True, 0.0, True),
     ],
 )
-def test_an_episode_reaches_the_goal_by_its_total_and_its_mission(
+def test_goal_needs_total_and_mission(
     total: float, passed: bool, passing: bool, harder: float, expected: bool
 ) -> None:
     goal = replace(GOAL, passing=passing, harder={1: harder})
@@ -99,7 +99,7 @@ def test_episodes_in_both_worlds_spend_the_budget() -> None:
     assert ran.spent == 2
 
 
-def test_only_episodes_without_a_result_that_fit_the_budget_are_announced() -> None:
+def test_only_affordable_new_episodes_are_announced() -> None:
     asked: list[list[tuple[Candidate, int]]] = []
     ran = Trials(lambda *_: Outcome(0.0, True), 3, foresee=lambda wanted: asked.append([*wanted]))
     ran(ONE, 0)
@@ -121,7 +121,7 @@ def test_only_episodes_without_a_result_that_fit_the_budget_are_announced() -> N
         ({ONE: {0: 9.0, 8: -3.0}}, False),
     ],
 )
-def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
+def test_reserve_is_released_after_enough_gain(
     totals: dict[Candidate, dict[int, float]], released: bool
 ) -> None:
     ran = trials(totals, budget=2)
@@ -138,7 +138,7 @@ def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
         ran.charge()
 
 
-def test_a_gain_is_the_mean_over_the_seeds_that_ran() -> None:
+def test_gain_is_the_mean_over_seeds() -> None:
     ran = trials({ONE: {0: 4.0, 3: 4.0, 9: 70.0}})
     assert ran.gain(ONE, GOAL) == pytest.approx((4.0 + 1.0) / 2)
 
@@ -159,14 +159,14 @@ def test_effect_changes_reward_or_length_of_a_mission() -> None:
         assert ran.steps(TWO, pairs) == []
 
 
-def test_candidates_count_as_equal_on_the_seeds_where_their_outcomes_agree() -> None:
+def test_candidates_agree_on_common_seeds() -> None:
     ran = trials({ONE: {0: 1.0, 1: 2.0, 2: 3.0}, TWO: {1: 2.0, 2: 3.0, 3: 9.0}, THREE: {2: 4.0, 1: 2.0}})
     assert ran.same_as(ONE, TWO) == 2
     assert ran.same_as(ONE, THREE) == 0
     assert ran.same_as(TWO, candidate(7.0)) == 0
 
 
-def test_a_candidate_that_resembles_a_failed_candidate_is_predicted_to_fail() -> None:
+def test_resembling_candidate_is_predicted_to_fail() -> None:
     ran = trials({ONE: {0: 6.0, 1: 6.0, 2: 9.0}, TWO: {0: 7.0, 1: 7.5}, THREE: {2: 0.0}})
     assert not ran.falls_short(TWO, PAIRS, 9.0)  # nothing fell short yet
     ran.fell_short(ONE, PAIRS)
@@ -197,9 +197,7 @@ def test_confirmation_begins_with_two_hard_seeds() -> None:
         ([12.0, 5.0, 12.0], replace(GOAL, passing=True, ranged=True), True, 3),
     ],
 )
-def test_a_confirmation_runs_the_other_seeds_until_it_is_decided(
-    totals: list[float], goal: Goal, expected: bool, runs: int
-) -> None:
+def test_confirmation_runs_until_decided(totals: list[float], goal: Goal, expected: bool, runs: int) -> None:
     ran = Trials(lambda _, seed: Outcome(totals[seed - 1], totals[seed - 1] > 5.0), 9)
     assert confirmed(ONE, ran, goal, 0) is expected
     assert ran.totals == totals[:runs]
@@ -211,13 +209,13 @@ def test_a_confirmation_runs_the_other_seeds_until_it_is_decided(
     assert {*ran.misses} == missed
 
 
-def test_a_candidate_that_loses_known_missions_is_not_confirmed_and_runs_nothing() -> None:
+def test_candidate_with_known_losses_runs_nothing() -> None:
     ran = Trials(lambda *_: Outcome(10.0, True), 9, loses=lambda _: True)
     assert not confirmed(ONE, ran, GOAL, 0)
     assert ran.spent == 0
 
 
-def test_designed_missions_run_to_compute_the_deviation_are_charged_once_per_seed() -> None:
+def test_designed_missions_are_charged_once_per_seed() -> None:
     ran = Trials(lambda *_: Outcome(2.0, True, rewards=(2.0, 0.0)), 9)
     assert ran.deviation(ONE, [0, 1]) == 0.0
     assert (ran.spent, ran.beside) == (2, 0)
@@ -227,7 +225,7 @@ def test_designed_missions_run_to_compute_the_deviation_are_charged_once_per_see
     assert (ran.spent, ran.beside) == (6, 2)
 
 
-def test_a_change_has_a_label_and_an_effective_value_and_an_effect() -> None:
+def test_change_has_label_value_and_effect() -> None:
     literal = mutations(operand(3, "2.0", 2.0), 2.2)
     name = replace(operand(4, "KP", 3.0), definition=operand(1, "3.0", 3.0).span)
     factor = mutations(name, 2.2)
@@ -250,7 +248,7 @@ def test_the_risks_of_all_tests_sum_to_alpha() -> None:
     assert sum(risk_of(0.06, n) for n in range(40)) == pytest.approx(0.06)
 
 
-def test_the_reference_tolerates_five_percentage_points_more_failures_and_clips_losses() -> None:
+def test_reference_tolerates_five_points_more_failures() -> None:
     one = Reference([4.0, 6.0], 0.9, 1.0, 5.0)
     assert one.mean == 5.0
     assert one.tolerated == pytest.approx(0.15)
@@ -266,7 +264,7 @@ def test_the_reference_tolerates_five_percentage_points_more_failures_and_clips_
     [((5, 6), False, True), ((5, 12), False, False), ((5, 6), True, False), ((5, None), False, False)],
     ids=["sooner", "one later", "passed", "unknown"],
 )
-def test_a_candidate_makes_missions_fail_sooner_only_if_each_mission_fails_sooner(
+def test_earlier_failure_must_hold_in_each_mission(
     steps: tuple[int, int | None], passed: bool, sooner: bool
 ) -> None:
     goal = Goal((Pair(0, 0.0, 10), Pair(1, 0.0, 11)), near=8.0, enough=9.0, online=0.0, passing=True)

@@ -43,7 +43,7 @@ FIRST, SECOND = literal(4, "turn = 0.1", 0.1), literal(20, "turn = 0.1", 0.1)
         ("", ""),
     ],
 )
-def test_a_statement_stores_a_number_if_it_assigns_nothing_else(text: str, target: str) -> None:
+def test_storing_statement_assigns_one_number(text: str, target: str) -> None:
     assert assigned_alone(text) == target
 
 
@@ -64,17 +64,17 @@ def test_equal_numbers_assigned_to_one_name_are_twins() -> None:
     ],
     ids=["another value", "another file", "a product", "another name"],
 )
-def test_numbers_without_a_common_name_or_value_are_not_twins(other: Operand) -> None:
+def test_unrelated_numbers_are_no_twins(other: Operand) -> None:
     assert twins(units([FIRST, other])) == ()
 
 
-def test_the_uses_of_a_parameter_are_twins_within_its_function() -> None:
+def test_parameter_uses_are_twins_in_a_function() -> None:
     mine = [name(3, "turn"), name(5, "turn")]
     (twin,) = twins(units([*mine, name(9, "turn", "stop")]))
     assert twin.operands == tuple(mine)
 
 
-def test_twins_are_tried_as_soon_as_one_of_the_twins_gains() -> None:
+def test_twins_are_tried_once_one_gains() -> None:
     """Each turn needs twice the speed: one alone earns a part, both together the designed reward."""
     seen: list[int] = []
 

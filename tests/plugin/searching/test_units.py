@@ -70,7 +70,7 @@ def test_constant_is_also_tried_on_its_second_scale() -> None:
     assert charted([zero], {}) == (zero,)
 
 
-def test_the_uses_of_a_named_constant_in_a_file_change_together() -> None:
+def test_named_constant_changes_at_all_uses() -> None:
     elsewhere = replace(SECOND, site=SiteId("node", "run", "t"))
     other_file = replace(SECOND, span=replace(SECOND.span, path="b.py"))
     flag = use("FLAG", True, named=2)
@@ -90,7 +90,7 @@ def test_the_uses_of_a_named_constant_in_a_file_change_together() -> None:
     assert whole_constants(given) == (Unit((FIRST, elsewhere)), *given[1:2], *given[3:])
 
 
-def test_the_best_gain_of_each_constant_is_stored_by_site() -> None:
+def test_best_gain_is_stored_by_site() -> None:
     one, two = (
         Unit((use("2.0", 2.0),)),
         Unit((use("3.0", 3.0, column=20), use("4.0", 4.0, column=30, site="t"))),

@@ -36,7 +36,7 @@ def selection(trials: Trials) -> ForwardSelection:
     return ForwardSelection((), mutations, trials, GOAL, {}, 0.1)
 
 
-def test_a_constant_that_matters_only_under_another_change_is_found() -> None:
+def test_masked_constant_is_found() -> None:
     trials = Trials(wrap, 300)
     search = Sweep((*REST, TURNS, PULL), mutations, (ALWAYS,), trials, GOAL)
     found = next(search.candidates())
@@ -45,7 +45,7 @@ def test_a_constant_that_matters_only_under_another_change_is_found() -> None:
 
 
 @pytest.mark.parametrize(("steps", "expected"), [(TORN, False), (11, False), (12, True), (WRAPPED, True)])
-def test_missions_count_as_longer_if_they_last_a_fifth_longer(steps: int, expected: bool) -> None:
+def test_fifth_longer_missions_count_as_longer(steps: int, expected: bool) -> None:
     base = Joint(((Unit((PULL,)), 0.65),), ALWAYS)
     trials = Trials(lambda *_: Outcome(1.0, False, steps=steps), 9)
     trials(base.candidate(mutations), PAIRS[0].seed)
@@ -59,7 +59,7 @@ def test_missions_of_unknown_length_do_not_count_as_longer() -> None:
     assert not longer(base, selection(trials))
 
 
-def test_constants_without_an_effect_under_another_change_take_two_episodes_each() -> None:
+def test_masked_constants_take_two_episodes_each() -> None:
     trials = Trials(wrap, 300)
     base, hidden = Joint(((Unit((PULL,)), 0.65),), ALWAYS), [Unit((one,)) for one in REST]
     assert not list(unmasked(base, hidden, selection(trials)))

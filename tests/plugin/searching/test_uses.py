@@ -40,7 +40,7 @@ def searched(needed: set[Operand], other: set[Operand]) -> tuple[Sweep, Candidat
     return sweep, next(sweep.candidates(), None), trials
 
 
-def test_all_uses_are_changed_together_before_a_single_use_is_changed() -> None:
+def test_all_uses_change_before_a_single_one() -> None:
     _, found, trials = searched({FIRST, SECOND}, set())
     assert found is not None
     assert {one.operand for one in found.mutations} == {FIRST, SECOND}
@@ -96,7 +96,7 @@ def test_uses_outside_the_search_change_together() -> None:
     assert uses_apart(plain[:1], []) == ((plain[0],), {})
 
 
-def test_the_uses_of_a_constant_are_moved_and_compared_as_one() -> None:
+def test_uses_are_compared_as_one() -> None:
     whole = Unit((FIRST, SECOND))
     one, other = (Candidate(whole.mutations(mutations, by), ALWAYS) for by in (1.5, 1.2))
     assert common_factor(one) == 1.5
@@ -109,7 +109,7 @@ def test_the_uses_of_a_constant_are_moved_and_compared_as_one() -> None:
     assert moved(mixed, 1.1, mutations) is None
 
 
-def test_a_single_use_is_tried_on_the_seed_of_the_whole_constant() -> None:
+def test_single_use_runs_on_the_seed_of_all() -> None:
     ran: dict[tuple[str, float], list[int]] = {}
 
     def run(candidate: Candidate, seed: int) -> Outcome:

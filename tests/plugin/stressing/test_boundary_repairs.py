@@ -64,7 +64,7 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(
     assert "GAIN = 2.0" not in (tank.path / "keeper.py").read_text("utf-8")
 
 
-def test_a_boundary_repair_sets_the_drift_of_episodes_without_a_point() -> None:
+def test_boundary_repair_sets_the_drift_of_its_episodes() -> None:
     simulated = Simulated(lambda point, _: (True, float(point["mud"])))
     placed = Placed(
         simulated, "world", lambda seed: {"mud": float(seed)}, {Path("a.py"): "1", Path("b.py"): "2"}
@@ -122,7 +122,7 @@ def multiplied(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - 3.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.02))
 
 
-def test_the_repair_of_a_combination_reports_its_distance_before_and_after() -> None:
+def test_combination_repair_reports_both_distances() -> None:
     """Without the repair, the margin is 0 at a · b = 1 / 6; the repair keeps it positive up to the end of the ray."""
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
     failed = failure(space, {"a": 0.45, "b": 0.45})

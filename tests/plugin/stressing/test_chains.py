@@ -59,7 +59,7 @@ def test_chain_leads_from_far_drifts_to_the_boundary(seed: int) -> None:
     assert all(nearest.distance(point) < limit for point in chains.chain(nearest, chains.FIRST, limit))
 
 
-def test_clearly_failing_drifts_are_tested_if_the_model_was_wrong_nearby() -> None:
+def test_failing_drifts_are_tested_where_the_model_erred() -> None:
     evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.9, 1.0), SQUARE)
     points = [{"a": 0.1 * number, "b": 0.1 * number} for number in range(1, 10)]
     nearest = Nearest(evaluator, [], [*points[::-1], {"a": 1.0, "b": 0.0}, {"a": 0.2, "b": 0.3}])
@@ -131,7 +131,7 @@ def test_chain_risks_add_up_to_the_whole_risk() -> None:
     assert len(SPENT) == len(NEAREST)
 
 
-def test_chains_rarely_confirm_a_drift_at_which_the_guarantee_just_holds() -> None:
+def test_chains_rarely_confirm_a_holding_drift() -> None:
     """Each chain goes from failing drifts to drifts that lose just what is tolerated; at a high risk, errors occur."""
     wrong = 0
     points = [{"a": a, "b": b} for a, b in ((0.9, 0.4), (0.625, 0.0), (0.5, 1.0 / 6.0), (0.35, 0.55 / 1.5))]

@@ -94,7 +94,7 @@ def test_hopeless_test_ends_early() -> None:
     assert tests.ran == tests.failed == set()
 
 
-def test_failures_after_an_interim_check_do_not_count_in_that_check() -> None:
+def test_later_failures_do_not_count_in_a_check() -> None:
     # one failure fewer than needed among the first 16 seeds, and all further seeds pass
     assert not confirmed(lambda row: row < LEAST[0] - 1)[0][0]
     # the missing one follows among the first 32 seeds, which need more failures
@@ -126,7 +126,7 @@ def test_drift_that_fails_on_the_same_seeds_is_confirmed() -> None:
     assert tests.ran == {*ran[0]}
 
 
-def test_the_estimate_extends_the_share_of_failed_seeds_to_all_seeds() -> None:
+def test_estimate_extends_failed_seeds_to_all() -> None:
     failed = {row for row in confirmed(even)[1][0] if even(row)}
     half = sorted(failed)[1::2]
     _, ran, counts, __ = confirmed(even, lambda row: row in half)
@@ -136,7 +136,7 @@ def test_the_estimate_extends_the_share_of_failed_seeds_to_all_seeds() -> None:
     assert counts[1].episodes == len({*ran[0], *new})
 
 
-def test_the_model_learns_from_episodes_before_the_end_of_the_budget() -> None:
+def test_model_learns_until_the_budget_ends() -> None:
     episodes: Any = Scripted()
     episodes.fails = lambda row: row % 3 == 0
     episodes.stops = BLOCK
@@ -179,13 +179,13 @@ DRIFTS: list[Any] = [{"a": 0.8, "b": 0.6}, {"a": 0.6, "b": 0.45}, {"a": 0.4, "b"
         ((0.9, 0.9, 0.9), (UNLIKELY, 0.0, 0.0), "both"),
     ],
 )
-def test_a_chain_tests_the_part_of_the_guarantee_that_its_drifts_break(
+def test_chain_tests_the_broken_part_of_the_guarantee(
     by_loss: Sequence[float], by_rate: Sequence[float], expected: str
 ) -> None:
     assert part_of(model_of(by_loss, by_rate), DRIFTS) == expected
 
 
-def test_chains_that_the_model_does_not_cover_test_both_parts() -> None:
+def test_chain_outside_the_model_tests_both_parts() -> None:
     certain = model_of((0.0,), (1.0,))
     assert part_of(certain, DRIFTS[:1]) == "rate"
     assert part_of(certain, []) == "both"
@@ -212,7 +212,7 @@ def test_further_drifts_lie_nearer_than_the_last() -> None:
     assert edge == {"a": 1.0, "b": pytest.approx(0.5 * OUTWARD[0])}
 
 
-def test_a_chain_is_only_refined_towards_nominal_if_other_seeds_fail() -> None:
+def test_chain_with_other_failing_seeds_is_refined_one_way() -> None:
     found = finer(model_of((), ()), DRIFTS, "rate")
     assert lengths(found) == pytest.approx([1.0, 0.75, 0.5, *(0.5 * one for one in INWARD)])
 
@@ -227,13 +227,13 @@ def test_loss_chain_continues_towards_nominal(
     assert lengths(finer(model_of((), ()), DRIFTS[2:], part)) == pytest.approx([0.5, *inward])
 
 
-def test_a_chain_that_the_model_does_not_cover_is_not_refined() -> None:
+def test_chain_outside_the_model_is_not_refined() -> None:
     option: list[Any] = [{"a": 0.6, "b": 0.8, "option": 1.0}]
     assert finer(model_of((), ()), option, "both") == option
     assert finer(model_of((), ()), [], "both") == []
 
 
-def test_chains_without_a_failing_drift_or_with_an_option_are_short() -> None:
+def test_chains_with_an_option_are_short() -> None:
     option = {"a": 0.6, "b": 0.8, "option": 1.0}
 
     def chain(best: Any, limit: float) -> Any:
@@ -255,9 +255,7 @@ def test_chains_without_a_failing_drift_or_with_an_option_are_short() -> None:
         ({"a": 0.1, "b": 0.3}, {"a": 0.3, "b": 0.1, "option": 1.0}, 3.0),
     ],
 )
-def test_small_steps_lead_from_a_confirmed_drift_in_the_likeliest_direction(
-    best: Any, predicted: Any, slope: float
-) -> None:
+def test_small_steps_follow_the_likeliest_direction(best: Any, predicted: Any, slope: float) -> None:
     nearest = model_of((), ())
     failing = SimpleNamespace(failing=lambda vectors: vectors[:, 1])
     nearest.model = lambda: failing

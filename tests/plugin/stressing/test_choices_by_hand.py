@@ -91,7 +91,7 @@ def searching(
     return found
 
 
-def test_predictions_allow_for_errors_of_different_sizes_and_each_prediction_is_tried(
+def test_predictions_allow_for_errors(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     model = Model([np.array([0.5, 0.0]), np.array([0.4, 0.0]), np.array([0.3, 0.0])])
@@ -170,7 +170,7 @@ def test_search_evolves_and_then_shrinks_the_best_drift(
     assert search.tried == []
 
 
-def test_an_evolution_starts_at_the_best_drift_and_ends_after_misses(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_evolution_starts_at_the_best_drift(monkeypatch: pytest.MonkeyPatch) -> None:
     starts: list[Any] = []
 
     def evolve(start: Any, size: float, draws: Any, margin: Any) -> None:
@@ -251,7 +251,7 @@ def test_spread_vectors_respect_lengths_and_signs() -> None:
     assert 20 <= unchanged <= 65  # a fifth, apart from vectors without any change
 
 
-def test_vectors_around_another_vector_are_moved_by_a_quarter_of_its_length() -> None:
+def test_nearby_vectors_move_by_a_quarter() -> None:
     draws: Any = SimpleNamespace(
         standard_normal=lambda count: np.array([1.0, 0.0]), uniform=lambda low, high: 0.9
     )
@@ -260,7 +260,7 @@ def test_vectors_around_another_vector_are_moved_by_a_quarter_of_its_length() ->
     assert found == pytest.approx(moved / np.linalg.norm(moved) * 0.45)
 
 
-def test_the_best_of_random_vectors_is_refined_in_smaller_and_smaller_steps() -> None:
+def test_best_random_vector_is_refined() -> None:
     samples = [Sample(np.array([0.5, 0.0]), 0.5, 0.1, 0, [("search", 0), ("search", 1)])]
     model = Prediction(Coordinates(SQUARE, SQUARE.nominal), GIVEN, samples, Shown(0.1, 0.25), 0.01, 0.0)
     shapes: list[int] = []
@@ -278,7 +278,7 @@ def test_the_best_of_random_vectors_is_refined_in_smaller_and_smaller_steps() ->
     assert np.linalg.norm(short) <= 0.3 + 1e-9
 
 
-def test_random_drifts_are_compared_with_the_shortest_of_many_failing_drifts() -> None:
+def test_random_drifts_are_compared_with_the_shortest() -> None:
     lengths = np.linspace(0.01, 1.0, 100)
     samples = [
         Sample(np.array([one, 0.0]), 2.0 * one, 0.01, 0, [("search", number)])
@@ -293,7 +293,7 @@ def test_random_drifts_are_compared_with_the_shortest_of_many_failing_drifts() -
     assert near.min() < 0.5  # then those that almost fail
 
 
-def test_the_allowance_for_errors_lowers_the_excess_of_losses_and_failure_rates() -> None:
+def test_error_allowance_lowers_the_excess() -> None:
     sources = [("search", number) for number in range(8)]
     failing = [
         Sample(np.array([0.9, 0.0]), 0.1, 0.01, 8, sources),
@@ -308,7 +308,7 @@ def test_the_allowance_for_errors_lowers_the_excess_of_losses_and_failure_rates(
     assert (deviations > 0.0).all()
 
 
-def test_an_evolution_ends_when_the_margin_of_a_vector_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_evolution_ends_at_an_unknown_margin(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
 
     def margin(vector: Any) -> float | None:
@@ -334,7 +334,7 @@ def outcomes(*totals: float, failed: int = 0) -> list[Outcome]:
 USUAL = outcomes(*[10.0] * 64)
 
 
-def test_eight_passing_episodes_with_a_small_loss_show_that_the_guarantee_holds() -> None:
+def test_eight_good_episodes_show_the_guarantee() -> None:
     one = examined(GIVEN, outcomes(*[9.9] * 8), USUAL[:8])
     assert (one.result, one.episodes, one.passed, one.loss, one.spread) == (
         "holds",
@@ -350,7 +350,7 @@ def test_eight_passing_episodes_with_a_small_loss_show_that_the_guarantee_holds(
     assert examined(GIVEN, outcomes(9.0), USUAL[:1]).spread == 0.0
 
 
-def test_a_margin_with_failures_has_an_error_of_at_least_a_tenth() -> None:
+def test_margin_with_failures_has_a_minimum_error() -> None:
     margin, error = margin_of(replace(GIVEN, share=1.0), outcomes(*[10.0] * 64, failed=1), USUAL)
     assert margin == pytest.approx((63 / 64 - 0.9) / 0.1)
     assert error > 0.1
@@ -361,14 +361,14 @@ def test_a_margin_with_failures_has_an_error_of_at_least_a_tenth() -> None:
     assert flat <= 1.0
 
 
-def test_a_test_of_one_part_of_the_guarantee_ignores_the_other_part() -> None:
+def test_test_of_one_part_ignores_the_other() -> None:
     losing, failing = outcomes(*[9.0] * 32), outcomes(*[10.0] * 32, failed=16)
     for part, by_loss, by_rate in (("both", True, True), ("loss", True, False), ("rate", False, True)):
         found = [refuted(GIVEN, one, USUAL[:32], 0.01, part) for one in (losing, failing)]  # type: ignore[arg-type]
         assert found == [by_loss, by_rate]
 
 
-def test_a_test_is_hopeless_once_neither_part_can_be_refuted() -> None:
+def test_hopeless_test_can_refute_neither_part() -> None:
     fine, failing = outcomes(*[10.0] * 16), outcomes(*[10.0] * 16, failed=4)
     assert hopeless(GIVEN, fine, USUAL[:16], 32, 0.01)
     assert not hopeless(GIVEN, failing, USUAL[:16], 64, 0.01)
@@ -377,7 +377,7 @@ def test_a_test_is_hopeless_once_neither_part_can_be_refuted() -> None:
     assert hopeless(GIVEN, outcomes(*[9.45] * 16), USUAL[:16], 64, 0.01, "rate")
 
 
-def test_enough_passes_and_a_small_loss_show_the_guarantee_at_a_risk() -> None:
+def test_enough_passes_show_the_guarantee_at_a_risk() -> None:
     assert enough_pass(GIVEN, USUAL[:29], 0.05)
     assert not enough_pass(GIVEN, USUAL[:28], 0.05)
     assert little_lost(GIVEN, outcomes(*[9.9] * 16), USUAL[:16], 0.05)
@@ -421,7 +421,7 @@ def test_farther_value_is_tested_first(
 
 
 @pytest.mark.parametrize(("failed", "shown", "spent"), [(0, True, 1), (1, True, 2), (2, False, 1)])
-def test_one_failed_episode_is_allowed_in_a_longer_second_test(
+def test_longer_second_test_allows_one_failure(
     failed: int, shown: bool, spent: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sizes: list[int] = []
@@ -495,7 +495,7 @@ def test_margin_file_with_a_nominal_end_is_refused() -> None:
             read((text % wrong).encode(), "m.json")
 
 
-def test_the_report_has_one_label_for_each_block_and_indented_sentences() -> None:
+def test_report_has_one_label_per_block() -> None:
     told = list(
         lines(
             stress(
@@ -524,7 +524,7 @@ def test_both_sides_of_a_range_are_printed_together() -> None:
     assert calm == {"slope": ["Not affected by slope: no failure found from -1 to 1 (3 values)."]}
 
 
-def test_statements_are_searched_unless_the_run_was_interrupted_or_records_none(
+def test_interrupted_run_searches_no_statements(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from pytest_tarl.stressing import search
@@ -574,7 +574,7 @@ def test_a_guarantee_is_printed_with_its_rate_and_tolerance() -> None:
 # the end of the budget
 
 
-def test_the_map_is_drawn_without_further_episodes_after_the_budget_is_spent() -> None:
+def test_map_is_drawn_without_a_budget() -> None:
     space = space_of(
         a=Drift.range(0.0, 1.0, nominal=0.0),
         b=Drift.range(0.0, 1.0, nominal=0.0),

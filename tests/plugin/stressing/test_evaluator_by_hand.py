@@ -60,7 +60,7 @@ def seeds(pool: str, count: int) -> list[int]:
 # which seeds run
 
 
-def test_a_quick_look_first_runs_two_episodes_and_their_nominal_counterparts() -> None:
+def test_quick_look_runs_two_episodes_and_nominal_ones() -> None:
     made, ran = evaluator(constant(9.8))
     found = made.glance(UP)
     assert (found.episodes, found.passed, made.spent) == (2, 2, 4)
@@ -99,7 +99,7 @@ def test_a_decided_drift_gets_no_further_episodes() -> None:
         assert made.examine(UP, 16).episodes == episodes
 
 
-def test_an_undecided_drift_gets_at_most_the_given_number_of_episodes() -> None:
+def test_undecided_drift_gets_limited_episodes() -> None:
     for most, episodes in ((4, 4), (7, 4), (8, 8), (31, 16), (32, 32), (99, 32)):
         made, _ = evaluator(constant(9.5))
         assert made.examine(UP, most).episodes == episodes
@@ -132,7 +132,7 @@ def test_a_clear_failure_is_confirmed_after_the_first_check() -> None:
     assert {plan.seed for plan in ran.plans} == set(seeds("chain 0", FRESH[0]))
 
 
-def test_testing_a_drift_without_any_loss_ends_after_the_first_check() -> None:
+def test_test_without_loss_ends_at_the_first_check() -> None:
     made, _ = evaluator(constant(10.0))
     assert not made.confirm(UP, "chain 0", 0.01)
     assert made.spent == 2 * FRESH[0]
@@ -173,7 +173,7 @@ def test_a_test_is_judged_hopeless_by_its_last_check(monkeypatch: pytest.MonkeyP
 # budgets
 
 
-def test_the_budget_covers_its_last_episode_and_no_further_episode() -> None:
+def test_budget_covers_its_last_episode() -> None:
     made, _ = evaluator(constant(9.5), budget=4)
     made.glance(UP)
     assert made.left == 0
@@ -205,7 +205,7 @@ def test_a_phase_limit_also_shortens_the_time(monkeypatch: pytest.MonkeyPatch) -
         assert untimed.seconds is None
 
 
-def test_a_time_limit_is_converted_at_the_speed_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_time_limit_is_converted_by_speed(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
     monkeypatch.setattr(evaluating, "monotonic", lambda: now[0])
     made, _ = evaluator(constant(9.5), seconds=10.0)
@@ -249,7 +249,7 @@ def test_the_budget_must_cover_only_the_missing_fresh_episodes() -> None:
 # what the model learns from
 
 
-def test_losses_are_in_units_of_the_tolerance_and_failures_are_counted() -> None:
+def test_losses_are_in_units_of_the_tolerance() -> None:
     made, _ = evaluator(lambda point, _: (point["a"] == 0.0, 10.0 - point["a"]))
     made.glance(UP, 1)
     assert made.losses(UP) == ([pytest.approx(1.0)] * 2, 2)
@@ -266,7 +266,7 @@ def test_an_unknown_drift_has_no_losses() -> None:
         made.measured(UP)
 
 
-def test_without_a_tolerance_every_loss_counts_as_twice_the_tolerated_loss() -> None:
+def test_loss_without_a_tolerance_counts_twice() -> None:
     made, _ = evaluator(constant(9.5))
     made.guarantee = Guarantee(0.9, 0.0, (10.0,) * 20, 1.0)
     made.glance(UP)
@@ -278,7 +278,7 @@ def test_without_a_tolerance_every_loss_counts_as_twice_the_tolerated_loss() -> 
     assert equal.losses(UP)[0] == [0.0, 0.0]
 
 
-def test_the_model_learns_from_fresh_episodes_once_their_pool_is_released() -> None:
+def test_model_learns_from_released_fresh_episodes() -> None:
     made, _ = evaluator(constant(9.5))
     made.glance(UP)
     made.confirm(UP, "chain 3", 0.01)
@@ -301,7 +301,7 @@ def test_unpaired_test_runs_no_nominal_episodes() -> None:
     assert all(failed for _, failed in made.recalled("chain 0", UP))
 
 
-def test_the_rewards_of_the_search_are_paired_with_nominal_rewards() -> None:
+def test_search_rewards_are_paired_with_nominal_ones() -> None:
     made, _ = evaluator(constant(9.25))
     made.glance(UP)
     assert made.totals(UP) == [(9.25, 10.0)] * GLANCE
@@ -319,7 +319,7 @@ def test_the_margin_is_measured_again_after_further_episodes() -> None:
     assert made.measured(UP)[0] < first[0]
 
 
-def test_the_seeds_of_a_chain_run_in_the_requested_order() -> None:
+def test_chain_seeds_run_in_order() -> None:
     made, ran = evaluator(lambda point, draws: (True, float(draws.normal())))
     made.ordered("chain 0", UP, [5, 2])
     found = made.ordered("chain 0", UP, [2, 7])
@@ -329,7 +329,7 @@ def test_the_seeds_of_a_chain_run_in_the_requested_order() -> None:
     assert made.recalled("chain 0", UP)[1][0].seed == every[2]
 
 
-def test_the_counts_of_a_pool_are_known_once_it_is_released() -> None:
+def test_pool_counts_are_known_after_its_release() -> None:
     made, _ = evaluator(constant(9.5))
     made.count("chain 0", Count(UP, 1.0, 8))
     made.count("chain 1", Count(DOWN, 2.0, 8))
@@ -344,9 +344,7 @@ def test_the_counts_of_a_pool_are_known_once_it_is_released() -> None:
     ("total", "passed", "failed"),
     [(9.5, True, False), (9.49, True, True), (10.0, False, True), (10.0, True, False)],
 )
-def test_a_recalled_episode_failed_if_it_lost_more_than_the_tolerance(
-    total: float, passed: bool, failed: bool
-) -> None:
+def test_recalled_episode_failed_by_its_loss(total: float, passed: bool, failed: bool) -> None:
     made, _ = evaluator(constant(total, passed))
     made.glance(UP)
     assert [one for _, one in made.recalled(SEARCH, UP)] == [failed] * 2
@@ -416,7 +414,7 @@ def test_a_confirmed_place_ends_the_tests_along_a_ray() -> None:
     assert one.rejected == ()
 
 
-def test_the_risk_of_the_tests_along_a_ray_falls_with_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ray_test_risk_falls_with_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
     made, _ = evaluator(failing_from(0.1))
     one = Curve(rays(SPACE, {})[0])
     sweep(one, made)
@@ -456,13 +454,13 @@ def test_a_direction_that_does_not_matter_becomes_nominal() -> None:
     assert 0.5 <= found["a"] <= 0.7
 
 
-def test_an_option_that_has_an_effect_is_kept_after_one_try() -> None:
+def test_effective_option_is_kept_after_one_try() -> None:
     made, _ = evaluator(lambda point, _: (point["camera"] == 0.0, 10.0))
     found = shrunk({"a": 0.0, "b": 0.5, "camera": 1.0}, made)
     assert found == {"a": 0.0, "b": 0.0, "camera": 1.0}
 
 
-def test_a_direction_is_halved_towards_nominal_three_times_at_most() -> None:
+def test_direction_is_halved_three_times() -> None:
     tried: list[float] = []
 
     def world(point: Point, _: np.random.Generator) -> tuple[bool, float]:

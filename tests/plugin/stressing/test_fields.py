@@ -75,7 +75,7 @@ def test_a_triangular_matrix_is_inverted(size: int) -> None:
     assert (np.triu(found, 1) == 0.0).all() or np.abs(np.triu(found, 1)).max() < 1e-10
 
 
-def test_the_predicted_means_are_the_same_with_and_without_deviations() -> None:
+def test_predicted_means_do_not_need_deviations() -> None:
     asked = drifts(7) * 0.5
     field = fit(20).field
     cross = covariance(asked, drifts(20))

@@ -34,7 +34,7 @@ def found() -> Stress:
     )
 
 
-def test_the_map_shows_the_two_most_important_directions_with_the_true_boundary() -> None:
+def test_map_shows_the_two_main_directions() -> None:
     drawn = found().margin_map
     assert drawn is not None
     assert drawn.names == ("a", "b")
@@ -68,7 +68,7 @@ def test_figures_are_well_formed_and_have_text_alternatives() -> None:
     assert "<h2>Directions</h2>" in told
 
 
-def test_a_space_of_one_direction_gets_neither_map_nor_tornado() -> None:
+def test_one_direction_gets_neither_map_nor_tornado() -> None:
     one = stressed(lambda point, _: (point["a"] < 0.5, 1.0), space_of(a=Drift.range(0.0, 1.0, nominal=0.0)))
     assert one.margin_map is None
     assert (map_figure(one), tornado(one), map_words(one)) == ("", "", "")
@@ -81,5 +81,5 @@ def luminance(colour: str) -> float:
 
 
 @pytest.mark.parametrize("background", [*COLOURS.values(), "#ffffff"])
-def test_text_has_a_contrast_of_at_least_4_5_to_every_background(background: str) -> None:
+def test_text_contrast_is_at_least_4_5(background: str) -> None:
     assert (luminance(background) + 0.05) / (luminance(INK) + 0.05) >= 4.5

@@ -67,7 +67,7 @@ def test_bar_length_is_the_lost_margin() -> None:
     assert colours == [fails, holds, fails]
 
 
-def test_the_texts_of_a_tornado_stand_at_its_ends_and_limits() -> None:
+def test_tornado_texts_stand_at_ends_and_limits() -> None:
     drawn = tornado(stress(*LOST))
     found = texts(drawn)
     step, low = tornado_figure.BAR + tornado_figure.GAP, 8 + 2 * (tornado_figure.BAR + tornado_figure.GAP)
@@ -97,7 +97,7 @@ def test_the_texts_of_a_tornado_stand_at_its_ends_and_limits() -> None:
     ]
 
 
-def test_directions_are_ranked_by_the_largest_margin_that_they_lose() -> None:
+def test_directions_are_ranked_by_lost_margin() -> None:
     assert mapping.importance(LOST) == {"mud": 2.0, "slope": 1.5}
     assert [*mapping.importance(LOST[1:])] == ["slope"]
     assert mapping.lost(curve(MUD, {1.0: -9.0})) == 2.5
@@ -163,7 +163,7 @@ def test_a_map_whose_rows_lack_standard_deviations_is_neither_drawn_nor_describe
             show(stress(margin_map=torn))
 
 
-def test_a_map_is_drawn_with_its_first_row_at_the_bottom() -> None:
+def test_first_map_row_is_at_the_bottom() -> None:
     failures = (combined(mud=2.0, slope=0.5), combined(mud=2.0, camera=1.0))
     drawn = map_figure.map_figure(stress(margin_map=SQUARE, combinations=failures))
     cells = [
@@ -190,7 +190,7 @@ def test_a_map_is_drawn_with_its_first_row_at_the_bottom() -> None:
     assert "holds in 50 % of the area, fails in 25 %, and is undecided in 25 %" in drawn
 
 
-def test_a_map_labels_its_axes_and_legend_at_fixed_positions() -> None:
+def test_map_labels_have_fixed_positions() -> None:
     drawn = map_figure.map_figure(stress(margin_map=SQUARE))
     found = texts(drawn)
     assert found["4"] == (490.0, 432.0, "middle")
@@ -233,7 +233,7 @@ def test_the_band_of_a_boundary_spans_its_interval() -> None:
     assert elements(section(curve(FLAT, GOOD), curve(STEEP, {1.0: 1.0})), "rect") == []
 
 
-def test_the_line_of_a_direction_passes_nominal_with_the_designed_margin() -> None:
+def test_direction_line_passes_the_designed_margin() -> None:
     drawn = section(curve(FLAT, {1.0: -9.0}), curve(STEEP, {0.5: 0.0, 1.0: 9.0}))
     (line,) = elements(drawn, "polyline")
     points = [tuple(map(float, one.split(","))) for one in line["points"].split()]

@@ -120,7 +120,7 @@ def test_tests_of_one_drift_size_share_the_risk(share: float, risk: float) -> No
     assert total <= risk
 
 
-def test_values_at_which_the_guarantee_fails_are_rarely_declared_to_hold() -> None:
+def test_failing_values_are_rarely_declared_to_hold() -> None:
     shown = 0
     for seed in range(20):
         evaluator = evaluator_of(rare_failures(0.5, 0.05), SPACE, seed=seed)

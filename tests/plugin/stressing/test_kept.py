@@ -72,7 +72,7 @@ def test_other_values_in_a_file_of_failures_are_ignored(
 
 @settings(max_examples=MANY)
 @given(st.integers(0, len(json.dumps(WHOLE)) - 1), st.integers(0, 255))
-def test_a_changed_byte_in_a_file_of_failures_is_harmless(
+def test_changed_byte_in_a_failure_file_is_harmless(
     tmp_path_factory: pytest.TempPathFactory, place: int, byte: int
 ) -> None:
     content = bytearray(json.dumps(WHOLE).encode())
@@ -115,7 +115,7 @@ def test_a_pipe_in_the_database_is_refused(tmp_path: Path) -> None:
         (errno.EFBIG, "ulimit -f"),
     ],
 )
-def test_one_line_names_the_files_that_could_not_be_written(
+def test_one_line_names_unwritten_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, advice: str
 ) -> None:
     found = stressed(cliff, space_of(mud=Drift.range(0.0, 1.0, nominal=1.0)))

@@ -78,7 +78,7 @@ VALUES = (
 
 @given(st.sampled_from(KEYS), st.sampled_from(VALUES))
 @example(("guarantee", "loss"), 10**400)
-def test_any_value_in_a_file_is_read_or_refused_with_one_sentence(key: tuple[Any, ...], value: Any) -> None:
+def test_any_file_value_is_read_or_refused(key: tuple[Any, ...], value: Any) -> None:
     document = json.loads(text(FOUND))
     place = document
     for part in key[:-1]:
@@ -140,7 +140,7 @@ def repository(folder: Path, before: Margins, after: Margins) -> None:
     path.write_text(text(after), "utf-8")
 
 
-def test_the_command_diff_compares_with_a_revision_and_fails_on_request(
+def test_diff_compares_with_a_revision(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     worse = replace(

@@ -33,7 +33,7 @@ from tests.plugin.stressing.test_words_by_hand import (
 )
 
 
-def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> None:
+def test_probability_of_few_failures_is_binomial() -> None:
     model = Model({0.5: seen(1.0)}, 0.5)
     weights = np.zeros((len(CENTRES), len(SCALES)))
     weights[100, -1] = 1.0  # an episode fails beyond 0.5, and in half of the cases at 0.5
@@ -52,14 +52,12 @@ def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> 
         (curve(MUD, {0.25: -1.0}), (0.0, 0.0), 16),
     ],
 )
-def test_the_sizes_at_which_to_test_whether_the_guarantee_holds_are_known(
-    one: Curve, values: tuple[float, float], paired: int
-) -> None:
+def test_sizes_for_holding_tests_are_known(one: Curve, values: tuple[float, float], paired: int) -> None:
     evaluator: Any = SimpleNamespace(guarantee=GIVEN)
     assert _values(one, evaluator) == (values, paired)
 
 
-def test_drift_sizes_that_are_tested_to_hold_lie_inside_the_boundary() -> None:
+def test_holding_tests_lie_inside_the_boundary() -> None:
     evaluator: Any = SimpleNamespace(guarantee=GIVEN)
     evidence = {t: Evidence("holds", 1.0, 60, 60, 0.0, 0.01) for t in (0.25, 0.5)}
     one = Curve(MUD, {**evidence, 0.75: Evidence("fails", -1.0, 60, 0, 0.0, 0.01)})
@@ -73,7 +71,7 @@ def test_drift_sizes_that_are_tested_to_hold_lie_inside_the_boundary() -> None:
     assert (farther > 0.0, more) == (True, 32)
 
 
-def test_pairs_of_directions_farther_than_a_known_failure_are_not_tested() -> None:
+def test_pairs_beyond_a_known_failure_are_not_tested() -> None:
     ran: list[Any] = []
 
     def examine(point: Any, most: int) -> Evidence:
@@ -125,7 +123,7 @@ def test_model_predicts_measured_losses() -> None:
     assert found.deeper(2.0).excess(np.array([[-0.6, 0.0]])) == pytest.approx([0.0], abs=0.03)
 
 
-def test_the_loss_at_the_shortest_failing_vector_is_just_detectable() -> None:
+def test_shortest_failing_vector_has_a_detectable_loss() -> None:
     found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
     vector = found.shortest(0.0, 2.0, np.random.default_rng(0))
     assert vector is not None
@@ -138,7 +136,7 @@ def test_the_loss_at_the_shortest_failing_vector_is_just_detectable() -> None:
     assert np.linalg.norm(cautious) > np.linalg.norm(vector)
 
 
-def test_a_drift_whose_episodes_fail_violates_the_guarantee_regardless_of_the_reward() -> None:
+def test_failing_drift_violates_the_guarantee_at_any_reward() -> None:
     vectors = np.array([[-0.4, 0.0]])
     assert model([(0.4, 0.0)]).failing(vectors)[0] < 0.01
     assert model([(0.4, 0.0)], failed=30).failing(vectors)[0] > 0.9

@@ -51,7 +51,7 @@ def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, lis
     return fmean(losses), 0.05, failed, evaluator.sources(point)
 
 
-def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
+def test_prediction_finds_the_nearest_additive_failure() -> None:
     weights = {"a": 1.0, "b": 2.0}
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(
@@ -130,7 +130,7 @@ def test_an_exception_under_a_generated_drift_is_raised_once() -> None:
     assert len(calls) == 1
 
 
-def test_the_evolution_strategy_neither_uses_nor_changes_the_global_random_generator() -> None:
+def test_evolution_uses_no_global_random_numbers() -> None:
     """Nodes may draw from the global generator in the process of the search, but not in workers."""
     reached: list[list[float]] = []
     for state in (1, 2):
@@ -149,7 +149,7 @@ def test_the_evolution_strategy_neither_uses_nor_changes_the_global_random_gener
     assert min(reached[0]) < 0.05
 
 
-def test_the_search_finds_the_boundary_of_two_directions_whose_effects_multiply() -> None:
+def test_search_finds_a_multiplicative_boundary() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return True, 10.0 - 0.5 * 4.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.1))
 
@@ -223,9 +223,7 @@ def test_a_failure_is_approached_equally_closely_under_each_option() -> None:
 
 
 @pytest.mark.parametrize(("common", "own", "unpaired"), [(0.3, 0.0, False), (0.0, 0.3, True)])
-def test_nominal_episodes_are_saved_if_rewards_vary_independently_under_drifts(
-    common: float, own: float, unpaired: bool
-) -> None:
+def test_independent_rewards_save_nominal_episodes(common: float, own: float, unpaired: bool) -> None:
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
 
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:

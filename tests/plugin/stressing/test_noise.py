@@ -33,11 +33,11 @@ def steep(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - lost * (1.0 + 0.5 * float(draws.normal())) + 0.02 * float(draws.normal())
 
 
-def test_losses_beyond_the_limits_of_the_model_count_as_the_limits() -> None:
+def test_extreme_losses_count_as_the_limits() -> None:
     assert cut_off([-9.0, 0.5, 40.0]) == pytest.approx([-1.5, 0.5, 2.5])
 
 
-def test_drifts_far_beyond_the_boundary_do_not_affect_the_typical_variance() -> None:
+def test_far_drifts_do_not_affect_the_typical_variance() -> None:
     near = [cut_off([0.4, 0.6]), cut_off([0.5, 0.7])]
     far = [cut_off([30.0, 90.0])] * 20
     assert typical_variance([*near, *far]) == pytest.approx(0.02)
@@ -45,13 +45,13 @@ def test_drifts_far_beyond_the_boundary_do_not_affect_the_typical_variance() -> 
     assert typical_variance([cut_off([0.3])]) == 1e-6  # one episode shows no variance
 
 
-def test_drifts_without_noise_do_not_hide_the_noise_of_the_others() -> None:
+def test_noiseless_drifts_do_not_hide_noise() -> None:
     quiet = [cut_off([0.0, 0.0])] * 30
     noisy = [cut_off([0.2, 0.6]), cut_off([0.5, 0.9])]
     assert typical_variance([*quiet, *noisy]) == pytest.approx(2 * 0.08 / 32)
 
 
-def test_the_variance_at_the_boundary_is_computed_from_drifts_with_similar_losses() -> None:
+def test_boundary_variance_uses_similar_losses() -> None:
     quiet = [cut_off([0.0, 0.02, -0.02])] * 30
     varying = [cut_off([0.4, 1.6, 1.0])] * 30
     far = [cut_off([30.0, 90.0])] * 30
@@ -62,13 +62,13 @@ def test_the_variance_at_the_boundary_is_computed_from_drifts_with_similar_losse
     assert variance_near(1.0, [cut_off([1.0])], 0.5) == 0.5  # one episode shows no variance
 
 
-def test_the_error_of_a_mean_shrinks_towards_the_typical_error() -> None:
+def test_error_of_a_mean_shrinks_to_the_typical_one() -> None:
     assert standard_error(cut_off([0.5, 0.5]), 0.0) == 0.0
     assert standard_error(cut_off([0.5, 0.5]), 0.25) == pytest.approx(np.sqrt(4 * 0.25 / 5 / 2))
     assert standard_error(cut_off([HIGHEST, 60.0]), 0.0) == 0.0  # both are at the limit
 
 
-def test_the_nominal_episode_adds_at_most_the_noise_of_the_recording() -> None:
+def test_nominal_episode_adds_the_recorded_noise_at_most() -> None:
     given = recorded(steep, SPACE)
     assert nominal_variance(given, 4.0) == pytest.approx((0.02 / 0.5) ** 2, rel=0.3)
     assert nominal_variance(given, 0.001) == 0.0005

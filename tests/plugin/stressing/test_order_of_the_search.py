@@ -115,11 +115,11 @@ def test_early_end_draws_the_known_results(error: BaseException, ended: str, tra
     assert trail == [*ORDER[:6], "draw"]
 
 
-def test_a_note_names_the_results_that_the_budget_did_not_cover(trail: list[Any]) -> None:
+def test_note_names_the_uncovered_results(trail: list[Any]) -> None:
     assert explored(short=True) == "budget"
 
 
-def test_there_are_no_variances_after_an_interruption_or_a_nominal_failure(
+def test_interrupted_search_has_no_variances(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(search, "sobol", lambda _: "indices")
@@ -394,9 +394,7 @@ def test_search_begins_with_a_look_at_each_ray(leading: list[Any], monkeypatch: 
     assert both.nearest.risk == pytest.approx(0.1 * 0.3)
 
 
-def test_no_clear_failure_is_tested_once_a_chain_was_confirmed(
-    leading: list[Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_confirmed_chain_ends_the_clear_failures(leading: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     answers = iter([False, True, False])
     tests: list[Any] = []
     monkeypatch.setattr(Combined, "_confirm", lambda self, plan: next(answers))
@@ -405,9 +403,7 @@ def test_no_clear_failure_is_tested_once_a_chain_was_confirmed(
     assert tests == []
 
 
-def test_small_steps_follow_from_the_nearest_confirmed_drift_until_none_is_confirmed(
-    leading: list[Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_small_steps_follow_confirmed_drifts(leading: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     far, near = drift(a=0.9, b=0.9), drift(a=0.6, b=0.6)
     begun: list[Point] = []
     tested: list[Any] = []
@@ -435,7 +431,7 @@ def test_small_steps_follow_from_the_nearest_confirmed_drift_until_none_is_confi
     assert tested == [(["from far"], "from far"), (["from near", "nearer"], "from near")]
 
 
-def test_no_small_steps_follow_if_the_next_chain_confirms_a_drift(
+def test_small_steps_stop_if_the_next_chain_confirms(
     leading: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Combined, "_confirm", lambda self, plan: True)
@@ -580,7 +576,7 @@ def test_each_option_has_its_own_search(leading: list[Any]) -> None:
     assert made(one_range).options == []
 
 
-def test_the_leading_search_has_the_nearest_failing_drift_of_its_own_options(leading: list[Any]) -> None:
+def test_leading_search_has_the_nearest_failure(leading: list[Any]) -> None:
     both = made(MIXED)
     down, left = both.options
     assert both._leading is both.nearest
@@ -619,7 +615,7 @@ def test_small_components_are_dropped_if_the_vector_still_fails() -> None:
     assert _without_trifles(np.array([0.8, 0.11]), needs, 0.0).tolist() == [0.8, 0.11]
 
 
-def test_the_rate_that_fresh_episodes_show_lies_between_its_limits() -> None:
+def test_detectable_rate_lies_between_its_limits() -> None:
     nearest = Nearest(evaluator_of(lambda *_: (True, 10.0), CUBE), [])
     assert nearest._shown(0.0).depth == 0.03
     assert nearest._shown(1.0).depth == pytest.approx(3.8 / 8)
@@ -627,7 +623,7 @@ def test_the_rate_that_fresh_episodes_show_lies_between_its_limits() -> None:
     assert 0.05 < nearest._share < 0.5
 
 
-def test_a_prediction_that_demands_more_needs_a_larger_excess_and_rate() -> None:
+def test_stricter_prediction_needs_a_larger_excess() -> None:
     samples = [Sample(np.array([0.5, 0.0, 0.0]), 0.5, 0.1, 0, [("search", 0), ("search", 1)])]
     model = Prediction(
         Coordinates(CUBE, CUBE.nominal), GIVEN, samples, Shown(0.1, 0.25), typical=0.01, paired=0.0

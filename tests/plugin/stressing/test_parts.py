@@ -59,7 +59,7 @@ def at(a: float, b: float = 0.0) -> Point:
         ((1.0, 0.6), (0.04, 0.01), "loss"),
     ],
 )
-def test_the_model_decides_which_part_of_the_guarantee_a_chain_tests(
+def test_model_decides_what_a_chain_tests(
     by_loss: tuple[float, float], by_rate: tuple[float, float], part: str
 ) -> None:
     nearest: Any = Told(

@@ -75,12 +75,12 @@ from tests.plugin.stressing.worlds import space_of
 # noise
 
 
-def test_losses_are_cut_off_at_both_limits_of_the_model() -> None:
+def test_losses_are_cut_off_at_both_limits() -> None:
     assert cut_off([-9.0, 0.5, 9.0]).tolist() == [-1.5, 0.5, 2.5]
     assert HIGHEST == 2.5
 
 
-def test_the_typical_variance_is_the_mean_of_the_variances_of_all_drifts() -> None:
+def test_typical_variance_is_a_mean() -> None:
     one, other = np.array([0.0, 1.0]), np.array([0.0, 2.0])
     assert typical_variance([one, other]) == pytest.approx((0.5 + 2.0) / 2)
     assert typical_variance([one, np.array([3.0])]) == pytest.approx(0.5)
@@ -90,12 +90,12 @@ def test_the_typical_variance_is_the_mean_of_the_variances_of_all_drifts() -> No
     assert typical_variance([]) == 1e-6
 
 
-def test_a_very_noisy_drift_counts_at_most_four_times_the_median() -> None:
+def test_noisy_drift_counts_four_medians_at_most() -> None:
     calm = [np.array([0.0, 1.0]), np.array([0.0, 1.0])]
     assert typical_variance([*calm, np.array([-1.5, 2.5])]) == pytest.approx((0.5 + 0.5 + 2.0) / 3)
 
 
-def test_the_nominal_variance_is_at_most_half_the_typical_variance() -> None:
+def test_nominal_variance_is_half_at_most() -> None:
     given = replace(GIVEN, totals=(9.0, 10.0, 11.0), tolerance=2.0)
     assert nominal_variance(given, 10.0) == pytest.approx(1.0 / 4.0)
     assert nominal_variance(given, 0.2) == pytest.approx(0.1)
@@ -103,7 +103,7 @@ def test_the_nominal_variance_is_at_most_half_the_typical_variance() -> None:
     assert nominal_variance(replace(given, tolerance=0.0), 10.0) == 5.0
 
 
-def test_the_variance_near_a_loss_weights_drifts_by_their_distance() -> None:
+def test_variance_near_a_loss_is_weighted() -> None:
     near, far = np.array([0.5, 1.5]), np.array([-1.0, 1.0])
     weight = np.exp(-((1.0 / 0.3) ** 2) / 2.0)
     expected = (1.0 * 0.5 + weight * 2.0 + 2.0 * 0.1) / (1.0 + weight + 2.0)
@@ -127,13 +127,13 @@ NOMINAL = Coordinates(SPACE, SPACE.nominal)
 OTHER = Coordinates(SPACE, point(camera=2.0))
 
 
-def test_drifts_are_converted_to_vectors_in_units_of_the_ranges_and_back() -> None:
+def test_drifts_are_converted_to_vectors_and_back() -> None:
     assert NOMINAL.vector(point(mud=1.0, slope=-0.5)).tolist() == [-0.75, -0.25]
     assert NOMINAL.point(np.array([-0.75, -0.25])) == point(mud=1.0, slope=-0.5)
     assert OTHER.point(np.array([0.0, 0.0])) == point(camera=2.0)
 
 
-def test_a_vector_beyond_the_ranges_is_clipped_and_rounding_errors_vanish() -> None:
+def test_vector_beyond_the_ranges_is_clipped() -> None:
     assert NOMINAL.point(np.array([-9.0, 9.0])) == point(mud=0.0, slope=1.0)
     assert NOMINAL.point(np.array([-1e-13, 1e-13])) == SPACE.nominal
     assert NOMINAL.point(np.array([-1e-11, 0.0]))["mud"] < 4.0
@@ -145,13 +145,13 @@ def test_base_knows_its_ranges_and_options() -> None:
     assert list(NOMINAL.spans) == ["mud", "slope"]
 
 
-def test_coordinates_cover_the_drifts_with_the_options_of_their_base() -> None:
+def test_coordinates_cover_the_options_of_their_base() -> None:
     assert NOMINAL.covers(point(mud=0.0))
     assert not NOMINAL.covers(point(camera=1.0))
     assert OTHER.covers(point(camera=2.0, slope=1.0))
 
 
-def test_a_vector_is_shortened_to_the_limit_that_the_options_leave() -> None:
+def test_vector_is_shortened_to_its_limit() -> None:
     vector = np.array([-0.6, 0.3])
     assert NOMINAL.within(vector, 1.0) is not None
     found = NOMINAL.within(np.array([-0.8, 0.0]), 0.4)
@@ -199,7 +199,7 @@ def test_the_normal_distribution_is_approximated_within_a_hundredth() -> None:
     assert _normal(np.array([1e9, -1e9])) == pytest.approx([1.0, 0.0], abs=1e-20)
 
 
-def test_a_direction_counts_as_irrelevant_only_if_that_increases_the_evidence() -> None:
+def test_irrelevant_direction_must_increase_the_evidence() -> None:
     vectors = np.array([[1.0, 0.0], [0.0, 1.0]])
 
     def field(prior: np.ndarray) -> Any:
@@ -236,13 +236,13 @@ def test_boundary_lies_between_holding_and_failing_values() -> None:
     assert found.boundary == Boundary(0.3, None, 0.3, True)
 
 
-def test_without_a_nearer_place_the_margin_falls_from_one_at_nominal() -> None:
+def test_margin_falls_from_one_at_nominal() -> None:
     found = curve(MUD, {0.5: -1.0}, confirmed=0.5).boundary
     assert found is not None
     assert found.at == pytest.approx(0.25)
 
 
-def test_undecided_evidence_counts_as_a_failure_if_its_margin_is_negative() -> None:
+def test_undecided_negative_margin_is_a_failure() -> None:
     results = [("open", -0.1), ("open", 0.0), ("holds", -0.1), ("fails", 0.1)]
     assert [seen(margin, result).failing for result, margin in results] == [True, False, False, True]
 
@@ -263,7 +263,7 @@ def near(distance: float, **changes: float) -> Failure:
     return replace(failure(SPACE, point(**changes)), distance=distance)
 
 
-def test_an_expected_failure_is_named_if_it_is_two_percent_nearer() -> None:
+def test_expected_failure_must_be_two_percent_nearer() -> None:
     one = stress(expected=(near(0.5, slope=0.5),), combinations=(near(0.6, slope=0.9, mud=1.0),))
     assert one.nearer == one.expected[0]
     limit = replace(one, combinations=(near(0.5 / 0.98, slope=0.9, mud=1.0),))
@@ -284,7 +284,7 @@ def test_failures_are_sorted_by_distance_and_then_by_name() -> None:
 # combinations
 
 
-def test_failures_that_contain_a_nearer_one_must_be_farther_by_some_percent() -> None:
+def test_containing_failures_must_be_farther() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     small = near(1.0, slope=0.5, mud=2.0)
     for distance, kept in ((APART - 0.005, 1), (APART, 2), (APART + 0.005, 2)):
@@ -320,7 +320,7 @@ def test_both_ends_of_one_range_are_not_a_pair() -> None:
 # regions
 
 
-def test_a_region_reaches_to_the_end_on_the_side_of_the_failure() -> None:
+def test_region_extends_to_the_failing_end() -> None:
     slope, mud, camera = (SPACE.extents[name] for name in ("slope", "mud", "camera"))
     assert (end(slope, 0.5), end(slope, -0.5), end(mud, 3.0), end(camera, 2.0)) == (1.0, -1.0, 0.0, 2.0)
     found = [one.words for one in regions(SPACE, failure(SPACE, point(slope=0.5, mud=2.0)))]
@@ -330,7 +330,7 @@ def test_a_region_reaches_to_the_end_on_the_side_of_the_failure() -> None:
     ]
 
 
-def test_a_failure_at_the_ends_has_one_region_with_fixed_values() -> None:
+def test_failure_at_the_ends_has_one_region() -> None:
     (one,) = regions(SPACE, failure(SPACE, point(slope=1.0, camera=1.0)))
     assert one.words == "slope=1 and camera='down'"
     assert one.drift.value == (1.0, "down")
@@ -382,7 +382,7 @@ class Recalling:
         return self.known.get((pool, where["slope"]), [])
 
 
-def test_episodes_of_failures_alternate_and_are_compared_with_similar_episodes_that_pass() -> None:
+def test_failing_episodes_are_compared_with_similar_passes() -> None:
     evaluator: Any = Recalling(
         {
             ("rays", 0.5): [("f1", True), ("p1", False), ("f2", True)],
@@ -448,7 +448,7 @@ def test_at_most_five_statements_are_printed(count: int, more: list[str]) -> Non
     assert found[5:] == more
 
 
-def test_a_promise_about_a_single_direction_is_printed_with_its_limits() -> None:
+def test_single_direction_promise_is_printed() -> None:
     found = stress(
         curve(STEEP, {0.5: -1.0}, confirmed=0.5),
         curve(DOWN, {1.0: -1.0}, confirmed=1.0),
@@ -509,7 +509,7 @@ def test_band_begins_at_nominal_and_is_visible() -> None:
     assert page._band(curve(STEEP), lambda value: value) == ""
 
 
-def test_repairs_are_a_table_of_boundaries_and_the_place_of_the_patch() -> None:
+def test_repairs_are_a_table_with_places() -> None:
     assert list(page._repairs(stress())) == []
     nothing = ["<h2>Repair</h2>", "<p>No failure was confirmed, so nothing was repaired.</p>"]
     assert list(page._repairs(stress(repairs=()))) == nothing
@@ -535,7 +535,7 @@ def test_statements_of_failures_are_a_table_or_a_sentence() -> None:
     assert len(list(page._statements(stress(statements=executed(0))))) == 2
 
 
-def test_the_variances_are_a_table_with_the_largest_total_first() -> None:
+def test_largest_variance_comes_first() -> None:
     shares = (Share("mud", 0.1, 0.01, 0.2, 0.05), Share("slope", 0.6, 0.1, 0.9, 0.1))
     *_, table = page._variance(stress(sobol=Sobol(1280, shares)))
     assert table.endswith(
@@ -547,7 +547,7 @@ def test_the_variances_are_a_table_with_the_largest_total_first() -> None:
 # files
 
 
-def test_only_a_missing_package_is_advised_if_it_prevents_the_variances(
+def test_missing_package_is_advised_if_needed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(delivering, "missing_sobol", lambda what: f"{what} needs SALib.")
@@ -583,7 +583,7 @@ def test_an_interrupted_run_writes_no_margins(tmp_path: Any, ended: str, files: 
     assert kept == ([()] if not ended else [])
 
 
-def test_a_run_that_ended_early_keeps_the_failures_that_it_found(tmp_path: Any) -> None:
+def test_early_end_keeps_the_failures_found(tmp_path: Any) -> None:
     kept: list[Any] = []
     memory: Any = SimpleNamespace(folder=tmp_path / "kept", write=kept.append)
     found = stress(curve(MUD, GOOD, confirmed=0.75), ended="interrupted")
@@ -601,7 +601,7 @@ def test_unwritable_file_is_reported(tmp_path: Any) -> None:
     assert "report     " not in lines[0]
 
 
-def test_the_test_fails_at_a_broken_promise_or_a_nominal_failure() -> None:
+def test_broken_promise_fails_the_test() -> None:
     assert delivering._problem(stress()) == ""
     assert delivering._problem(stress(ended="nominal")).startswith(
         "The guarantee already fails at the nominal"
@@ -622,7 +622,7 @@ def test_the_margins_of_an_option_are_zero_and_one() -> None:
 # guarantees
 
 
-def test_the_optimistic_failure_rate_is_about_a_standard_error_higher() -> None:
+def test_optimistic_failure_rate_is_one_error_higher() -> None:
     assert hopeful(3, 16) == pytest.approx(5 / 16)
     assert hopeful(0, 8) == pytest.approx(1 / 8)
 

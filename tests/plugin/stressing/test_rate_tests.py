@@ -62,9 +62,7 @@ def least(size: int, risk: float) -> int:
     st.lists(st.floats(0.02, 0.9), min_size=1, max_size=5),
 )
 @settings(max_examples=60, deadline=None)
-def test_a_drift_is_only_confirmed_if_all_seeds_would_confirm_it(
-    seed: int, alike: float, rates: list[float]
-) -> None:
+def test_confirmed_drift_needs_all_seeds(seed: int, alike: float, rates: list[float]) -> None:
     episodes = Episodes(seed, alike)
     for rate in confirmed(episodes, rates, 0.05):
         failed = [episodes.fails(rate, row) for row in range(LOOKS[-1])]
@@ -77,7 +75,7 @@ def test_a_drift_is_only_confirmed_if_all_seeds_would_confirm_it(
 
 
 @pytest.mark.parametrize("alike", [0.0, 0.5, 1.0])
-def test_chains_rarely_confirm_a_drift_with_just_the_guaranteed_rate(alike: float) -> None:
+def test_chains_rarely_confirm_the_guaranteed_rate(alike: float) -> None:
     runs, risk = 300, 0.1
     wrong = sum(
         len(confirmed(Episodes(seed, alike), (0.5, 0.3, 0.0501, 0.05, 0.0499), risk)) > 2

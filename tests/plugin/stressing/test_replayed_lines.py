@@ -12,7 +12,7 @@ from pytest_tarl.stressing.kept import EPISODES
 
 
 @pytest.mark.parametrize("fails", [[], [True], [False, True, True]])
-def test_each_kept_failure_has_a_line_that_says_whether_it_still_fails(
+def test_each_kept_failure_says_whether_it_still_fails(
     fails: list[bool], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = [SimpleNamespace(point=n, fails=one, passed=n, loss=n + 0.25) for n, one in enumerate(fails)]

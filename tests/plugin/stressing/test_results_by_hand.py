@@ -89,7 +89,7 @@ def test_regions_beyond_a_failure_reach_the_ends() -> None:
     assert option.drift.value == "left"
 
 
-def test_the_ray_through_a_combination_extends_ranges_and_keeps_options() -> None:
+def test_combined_ray_extends_ranges_and_keeps_options() -> None:
     ray = outwards(SPACE, combined(mud=3.0, slope=0.5, camera=1.0))
     assert ray.farthest == {"mud": 2.0, "slope": 1.0, "camera": 1.0}
     assert outwards(SPACE, combined(camera=1.0)).farthest == {"mud": 4.0, "slope": 0.0, "camera": 1.0}
@@ -101,7 +101,7 @@ def test_a_weight_interpolates_between_nominal_and_a_drift_size() -> None:
     assert (weighted(SPACE, "camera", 2.0, 0.1), weighted(SPACE, "camera", 2.0, 0.0)) == (2.0, 0.0)
 
 
-def test_vectors_are_clipped_to_the_declared_ranges_and_to_a_maximum_length() -> None:
+def test_vectors_are_clipped_to_ranges_and_length() -> None:
     one = Coordinates(SPACE, {**SPACE.nominal, "camera": 1.0})
     assert (one.low.tolist(), one.high.tolist(), one.options) == ([-1.0, -0.5], [0.0, 0.5], 1)
     assert one.covers({"mud": 1.0, "slope": 1.0, "camera": 1.0})
@@ -217,7 +217,7 @@ def test_strict_test_stops_if_equal_losses_cannot_refute() -> None:
 
 @pytest.mark.parametrize("directions", [1, 4, 50])
 @pytest.mark.parametrize("alpha", [0.01, 0.05, 0.3])
-def test_the_risks_of_all_claims_add_up_to_alpha_at_most(alpha: float, directions: int) -> None:
+def test_claim_risks_add_up_to_alpha_at_most(alpha: float, directions: int) -> None:
     risks = divided(alpha, directions)
     assert risks.combinations + (directions + 1) * risks.each <= alpha * (1 + 1e-12)
     assert min(risks.each, risks.combinations) > 0.0
@@ -230,7 +230,7 @@ def test_acceptable_loss_has_an_upper_bound_below_the_tolerance() -> None:
     assert not little_lost(declared, [Outcome(True, 9.7), Outcome(True, 9.8)] * 8, [FINE] * 16, 0.05)
 
 
-def test_a_nominal_world_with_lower_rewards_or_failures_differs_from_the_recording() -> None:
+def test_worse_nominal_world_differs_from_the_recording() -> None:
     varied = replace(GIVEN, totals=(9.9, 10.1) * 10)
     assert not unlike_recorded(varied, [Outcome(True, 9.9), Outcome(True, 9.8)] * 8, 0.05)
     assert unlike_recorded(varied, [Outcome(True, 9.0), Outcome(True, 8.9)] * 8, 0.05)
@@ -254,7 +254,7 @@ def test_kept_drift_counts_only_if_it_fails_again(
     assert found.loss == pytest.approx(loss)
 
 
-def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_sizes() -> None:
+def test_search_confirms_clearly_failing_sizes() -> None:
     option = curve(DOWN, {1.0: -1.0})
     assert _candidates(option, GIVEN, 0.1) == [1.0]
     assert _candidates(curve(MUD, {1.0: 1.0}), GIVEN, 0.1) == []
@@ -265,7 +265,7 @@ def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_sizes()
     assert _candidates(Curve(plain, {t: seen(m) for t, m in margins.items()}), GIVEN, 0.1) == [0.4, 0.8, 0.9]
 
 
-def test_a_bisection_halves_the_interval_to_a_fiftieth_of_the_range() -> None:
+def test_bisection_stops_at_a_fiftieth() -> None:
     asked: list[float] = []
 
     def examine(point: Any, most: int) -> Evidence:
@@ -364,7 +364,7 @@ def test_each_kind_of_boundary_has_its_sentence(side: Margin, expected: str) -> 
     assert boundary_words(side) == expected
 
 
-def test_compared_margins_are_listed_in_the_order_of_the_new_file() -> None:
+def test_margins_follow_the_new_file() -> None:
     up, gone = replace(SIDE, end=2.0), Margin("camera='down'", 0.0, 1.0, None, None)
     before = Margins("t", "w", 0.9, 0.5, 0.9, (gone, SIDE))
     found = compared([before], [replace(before, sides=(up, SIDE))])
@@ -383,7 +383,7 @@ def test_compared_margins_are_listed_in_the_order_of_the_new_file() -> None:
     ("size", "left", "rows"),
     [(2, 5 * 32, 32), (2, 5 * 32 - 1, 0), (2, 5 * 64, 64), (3, 10**6, 256), (1, 10**6, 0)],
 )
-def test_the_sample_has_as_many_rows_as_the_budget_allows(size: int, left: int, rows: int) -> None:
+def test_sample_has_one_row_per_affordable_episode(size: int, left: int, rows: int) -> None:
     assert affordable(size, left) == rows
 
 

@@ -40,7 +40,7 @@ def test_additive_directions_have_correct_first_order_indices_despite_noise() ->
     assert abs(a.first - 0.8) <= a.first_error
 
 
-def test_interacting_directions_have_large_total_and_small_first_order_indices() -> None:
+def test_interacting_directions_have_large_total_indices() -> None:
     found = sobol(evaluator_of(multiplied, SPACE, budget=800))
     assert found is not None
     for one in found.shares[:2]:
@@ -48,7 +48,7 @@ def test_interacting_directions_have_large_total_and_small_first_order_indices()
         assert one.total > 0.8
 
 
-def test_an_option_that_decides_the_margin_has_all_of_its_variance() -> None:
+def test_deciding_option_has_all_variance() -> None:
     found = sobol(evaluator_of(lambda point, _: (point["c<"] < 1.0, 1.0), SPACE, budget=400))
     assert found is not None
     assert [round(one.total, 1) for one in found.shares] == [0.0, 0.0, 1.0]
@@ -78,7 +78,7 @@ def test_the_sample_is_as_large_as_the_budget_allows() -> None:
     assert evaluator.spent == 0
 
 
-def test_all_reports_state_the_variance_shares_unless_the_budget_is_too_small() -> None:
+def test_reports_state_the_variance_shares() -> None:
     state = np.random.get_state()[1]
     found = stressed(added, SPACE, budget=600, variance=True, combined=False)
     assert (np.random.get_state()[1] == state).all()  # nodes may use the global generator

@@ -38,14 +38,14 @@ SPACE = space_of(mud=Drift.range(0.0, 1.0, nominal=0.0))
 PLACES = (("n.py", 1, "a"), ("n.py", 2, "b"), ("m.py", 7, "c <"))
 
 
-def test_places_are_statements_with_an_effect_and_their_columns_count_characters() -> None:
+def test_places_are_effective_statements() -> None:
     text = (
         '"""é"""\nimport a\n\n\ndef f(x):\n    "doc"\n    if x: é = 1; y = 2\n    elif x > 1:\n        pass\n'
     )
     assert [*places_in(text)] == [(7, 5), (7, 11), (7, 18), (8, 5)]
 
 
-def test_the_repositorys_own_files_have_a_place_for_each_recordable_statement() -> None:
+def test_own_files_have_a_place_per_statement() -> None:
     for path in sorted(Path(__file__).parents[3].glob("examples/*/*.py"))[:12]:
         text = path.read_text("utf-8")
         tree, found = ast.parse(text), {line for line, _ in places_in(text)}
@@ -87,7 +87,7 @@ class Recording(Simulated):
         return replace(run, trace=replace(run.trace, site=np.array(sites, np.int32)))
 
 
-def test_failing_episodes_are_repeated_and_compared_with_others_at_the_same_drift() -> None:
+def test_failing_episodes_are_repeated_and_compared() -> None:
     evaluator = evaluator_of(world, SPACE)
     curves = [Curve(ray) for ray in rays(SPACE, {})]
     along_rays(curves, evaluator, 0.01)
@@ -135,7 +135,7 @@ def test_text_json_and_page_show_the_statements(only: tuple[Executed, ...]) -> N
         assert "No statement ran only in failures" in shown
 
 
-def test_a_run_names_the_branch_that_the_node_takes_only_in_failures(tank: pytest.Pytester) -> None:
+def test_run_names_the_branch_of_failures(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "import Sensor", "import Drift, Sensor")
     space = '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0))}'
     changed(tank, "test_tank", '{"clogged": 0.25}', space)

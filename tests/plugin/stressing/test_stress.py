@@ -100,7 +100,7 @@ def test_a_failure_inside_must_hold_fails_the_test(spaced: pytest.Pytester) -> N
     assert "but must_hold is 0.2 to 1." in done.stdout.str()
 
 
-def test_a_nominal_world_that_differs_from_the_recorded_one_is_reported(spaced: pytest.Pytester) -> None:
+def test_changed_nominal_world_is_reported(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", "nominal=1.0", "nominal=0.2")
     done = spaced.runpytest(*STRESS)
     done.assert_outcomes(failed=1, deselected=1)
@@ -116,7 +116,7 @@ def test_ctrl_c_keeps_the_findings_so_far(spaced: pytest.Pytester) -> None:
     assert (found["ended"], found["episodes"]) == ("interrupted", 16)
 
 
-def test_without_a_recording_or_a_space_the_message_gives_the_next_step(tank: pytest.Pytester) -> None:
+def test_message_gives_the_next_step_without_a_recording(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*STRESS)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines(["*No test declares a space of drifts*"])
@@ -167,7 +167,7 @@ def test_must_hold_accepts_ranges_or_options_of_a_direction() -> None:
     assert must_hold("t", {"late": (None, 0.1)}, DRIFTS) == {"late": (0.0, 0.1)}
 
 
-def test_failures_violate_must_hold_with_one_end_or_with_options() -> None:
+def test_failures_violate_must_hold() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return point["slope"] < 0.1 and point["camera"] != 1.0, 1.0
 
@@ -185,7 +185,7 @@ def test_failures_violate_must_hold_with_one_end_or_with_options() -> None:
     ]
 
 
-def test_the_ends_of_a_must_hold_range_are_also_tested() -> None:
+def test_must_hold_ends_are_tested() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 1.0 - 1.5 * point["slope"]), 1.0  # 30 % fail at 0.2, 5 % at 0.033
 

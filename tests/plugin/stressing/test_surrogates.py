@@ -36,7 +36,7 @@ def test_the_prior_is_a_covariance_that_vanishes_at_nominal(seed: int) -> None:
     assert variance(nominal) == pytest.approx([0.0])
 
 
-def test_a_loss_is_interpolated_without_errors_and_smoothed_with_them() -> None:
+def test_loss_is_interpolated_or_smoothed() -> None:
     vectors = drifts(0)
     losses = vectors @ np.array([0.7, -0.2]) + 0.5 * vectors[:, 0] ** 2
     prior = covariance(vectors, vectors)
@@ -50,7 +50,7 @@ def test_a_loss_is_interpolated_without_errors_and_smoothed_with_them() -> None:
     assert deviations == pytest.approx(np.sqrt(variance(vectors)), rel=1e-3)
 
 
-def test_the_evidence_of_losses_is_the_density_of_a_normal_distribution() -> None:
+def test_evidence_is_a_normal_density() -> None:
     vectors = drifts(1, 5)
     losses, errors = vectors[:, 0], 0.1 * np.eye(5)
     prior = covariance(vectors, vectors)
@@ -75,7 +75,7 @@ def test_predicted_failure_rates_follow_the_counted_failures() -> None:
 
 @given(st.integers(0, 10**6), st.sampled_from([9.0, 36.0, 144.0]))
 @settings(max_examples=20, deadline=None)
-def test_a_fit_that_starts_from_another_fit_reaches_the_same_maximum(seed: int, scale: float) -> None:
+def test_warm_fit_reaches_the_same_maximum(seed: int, scale: float) -> None:
     """At the most probable logits, the weights are the excess of failures over their expectation."""
     vectors = drifts(seed)
     draws = np.random.default_rng(seed + 1)
@@ -104,7 +104,7 @@ def test_evidence_grows_with_the_scale_that_matters() -> None:
     assert evidence([1.0, 0.3]) > evidence([0.3, 1.0])
 
 
-def test_the_decorated_function_uses_one_blas_thread_and_others_keep_theirs() -> None:
+def test_decorated_function_uses_one_blas_thread() -> None:
     def threads() -> set[int]:
         return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
 

@@ -27,7 +27,7 @@ def jump(point: Point, _: np.random.Generator) -> tuple[bool, float]:
     return point["delay"] < 0.499 or point["gain"] < 0.21, 10.0
 
 
-def test_only_directions_that_do_not_cause_the_jump_are_moved() -> None:
+def test_only_harmless_directions_are_moved() -> None:
     evaluator, tried = evaluator_of(jump, SPACE), list[Point]()
     found = [*trimmed(AT, evaluator, tried)]
     # `gain` fails at 0.9, 0.675 and 0.5625 of 0.4, and holds at 0 and at 0.45; `slack` becomes nominal
@@ -46,7 +46,7 @@ def test_a_drift_that_holds_takes_four_episodes() -> None:
 @pytest.mark.parametrize(
     ("lost", "part"), [(0.5 * 1.3, None), (0.5 * 1.45, "loss")]
 )  # the tolerated loss is 0.5
-def test_a_loss_far_above_the_detectable_loss_indicates_a_jump(lost: float, part: str | None) -> None:
+def test_loss_far_above_detectable_is_a_jump(lost: float, part: str | None) -> None:
     evaluator = evaluator_of(lambda point, _: (True, 10.0 - (lost if point["delay"] else 0.0)), SPACE)
     evaluator.examine(AT, 4)
     assert broken(AT, evaluator, SHOWN) == part

@@ -71,7 +71,7 @@ def test_drifts_with_different_seeds_make_the_model_more_certain() -> None:
     assert deviation([[0, 1], [2, 3]]) < 0.95 * deviation([[0, 1], [0, 1]])
 
 
-def test_vectors_drawn_around_a_given_vector_are_shorter_and_similar() -> None:
+def test_nearby_vectors_are_shorter_and_similar() -> None:
     coordinates = Coordinates(SQUARE, SQUARE.nominal)
     best = np.array([0.3, 0.9])
     found = np.array(list(islice(around(coordinates, best, np.random.default_rng(0)), 100)))
@@ -83,7 +83,7 @@ def test_vectors_drawn_around_a_given_vector_are_shorter_and_similar() -> None:
     assert np.median(found @ best / lengths / np.linalg.norm(best)) > 0.9
 
 
-def test_half_of_the_explored_drifts_lie_where_the_model_expects_losses() -> None:
+def test_half_of_the_drifts_explore_expected_losses() -> None:
     """Only `a` changes the reward, and at the end of its range the loss is just tolerated."""
     evaluator = evaluator_of(lambda point, _: (True, 10.0 - 0.4 * point["a"]), SQUARE)
     nearest = Nearest(evaluator, [])
@@ -141,7 +141,7 @@ def test_clipped_losses_give_no_seed_factors(loss: float) -> None:
     assert shared(16, 0.0, 0.4, 0.0, loss) == 0.0
 
 
-def test_a_model_allows_for_the_shared_error_in_proportion_to_the_loss() -> None:
+def test_shared_error_grows_with_the_loss() -> None:
     coordinates = Coordinates(SQUARE, SQUARE.nominal)
     known = [(0.4, 0.5), (0.8, 1.0)]
     factors = [0.7, 1.3, 0.6, 1.4]

@@ -56,7 +56,7 @@ def stress(*curves: Curve, **changes: Any) -> Stress:
 GOOD = {0.25: 1.0, 0.5: 0.75, 0.75: -0.25, 1.0: -1.0}
 
 
-def test_the_boundary_lies_where_the_margin_vanishes_between_two_points() -> None:
+def test_boundary_lies_where_the_margin_vanishes() -> None:
     found = curve(MUD, GOOD, confirmed=0.75).boundary
     assert found is not None
     assert (found.at, found.near, found.far, found.monotone) == (pytest.approx(0.6875), None, 0.75, True)
@@ -76,7 +76,7 @@ def test_the_boundary_lies_where_the_margin_vanishes_between_two_points() -> Non
     assert curve(MUD, {1.0: 1.0}, confirmed=0.5).boundary is None
 
 
-def test_a_curve_is_monotone_if_no_point_beyond_its_first_failure_holds() -> None:
+def test_monotone_curve_stays_failed() -> None:
     found = curve(MUD, GOOD)
     assert (found.failing, found.bracket, found.monotone) == ([0.75, 1.0], (0.5, 0.75), True)
     found.evidence |= {0.9: seen(0.0, "open"), 0.1: seen(-0.1, "open")}
@@ -164,7 +164,7 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
     ]
 
 
-def test_combinations_that_contain_a_nearer_one_are_counted_but_not_printed() -> None:
+def test_containing_combinations_are_only_counted() -> None:
     near, aside = combined(mud=3.0, slope=0.3), combined(mud=3.5, slope=0.75)
     chain = [combined(mud=3.0 - n / 10, slope=0.3 + n / 50) for n in range(1, 6)]
     found = [*words.together(stress(combinations=(*chain, aside, near)))]
@@ -182,7 +182,7 @@ def test_combinations_that_contain_a_nearer_one_are_counted_but_not_printed() ->
     )
 
 
-def test_the_json_result_also_lists_farther_failures_along_a_direction() -> None:
+def test_json_lists_farther_failures() -> None:
     one = curve(MUD, {0.5: -1.0})
     for t in (0.9, 0.6, 0.5, 0.505):
         one.confirm(t)
@@ -230,7 +230,7 @@ def test_directions_hold_alone_without_a_smaller_failure(changed: Curve, alone: 
     assert told.endswith("although no failure was found with each change alone.") is alone
 
 
-def test_shares_of_the_variance_are_printed_with_the_largest_first() -> None:
+def test_largest_variance_share_is_printed_first() -> None:
     shares = (Share("a", -0.001, 0.1, 0.25, 0.05), Share("b", 0.5, 0.1, 0.75, 0.1))
     (told,) = words.sobol_words(stress(sobol=Sobol(99, shares)))
     assert told == (
@@ -293,7 +293,7 @@ def test_failure_inside_a_must_hold_range_violates_it(
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
 
 
-def test_a_suspicious_value_inside_must_hold_is_named_as_undecided() -> None:
+def test_suspicious_must_hold_value_is_undecided() -> None:
     found = stress(curve(MUD, GOOD), must_hold={"mud": (1.0, 4.0)})
     assert words.undecided_promises(found) == [
         "Undecided: mud=1 is within must_hold and suspicious, but no failure was confirmed."
@@ -315,9 +315,7 @@ def test_a_suspicious_value_inside_must_hold_is_named_as_undecided() -> None:
         ({}, False),
     ],
 )
-def test_a_failing_combination_violates_must_hold_if_all_its_directions_are_inside(
-    must_hold: dict[str, Any], broken: bool
-) -> None:
+def test_inner_failing_combination_violates_must_hold(must_hold: dict[str, Any], broken: bool) -> None:
     found = stress(curve(MUD, GOOD), combinations=(combined(mud=3.0, slope=0.25),), must_hold=must_hold)
     told = "The guarantee fails with mud=3 and slope=0.25, but must_hold includes this combination."
     assert words.broken_promises(found) == ([told] if broken else [])

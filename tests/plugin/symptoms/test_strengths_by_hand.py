@@ -77,7 +77,7 @@ def test_scale_is_the_trimmed_range_of_designed_values() -> None:
 
 
 @pytest.mark.parametrize(("number", "expected"), [(0, 0.0), (1, 0.25), (3, 0.75), (4, 1.0), (5, 1.0)])
-def test_the_strength_of_spikes_is_the_growth_of_their_share(number: int, expected: float) -> None:
+def test_spike_strength_is_the_growth_of_their_share(number: int, expected: float) -> None:
     spiky = step(102)
     spiky[4 : 4 + 3 * number : 3] = 0.5
     assert strength("spikes", pair(step(102), spiky)) == pytest.approx(expected)
@@ -97,7 +97,7 @@ def test_the_strength_of_spikes_is_the_growth_of_their_share(number: int, expect
         (0.0, 1.0, 2.0, 0.0),  # a slope
     ],
 )
-def test_a_spike_is_tall_and_returns_to_where_it_came_from(
+def test_spike_returns_to_where_it_came_from(
     before: float, value: float, after: float, expected: float
 ) -> None:
     edge = [before] * 20 + [value] + [after] * 20
@@ -119,7 +119,7 @@ def test_spikes_are_measured_on_the_larger_of_both_scales() -> None:
     assert strength("spikes", pair(np.zeros(102), np.zeros(102))) == 0.0
 
 
-def test_the_strength_of_spikes_is_a_mean_over_the_pairs() -> None:
+def test_spike_strength_is_a_mean_over_pairs() -> None:
     spiky = pair(step(102), with_values(step(102), at10=0.5))
     assert strength("spikes", spiky, pair(step(102), step(102))) == pytest.approx(0.125)
 
@@ -135,7 +135,7 @@ def zigzag(size: int, height: float) -> Floats:
 @pytest.mark.parametrize(
     ("rough", "expected"), [(0.0, 0.0), (0.005, 0.0), (0.02, 0.5), (0.05, 1.0), (0.5, 1.0)]
 )
-def test_the_strength_of_noise_is_the_growth_of_the_roughness(rough: float, expected: float) -> None:
+def test_noise_strength_is_the_growth_of_roughness(rough: float, expected: float) -> None:
     found = strength("noise", pair(step(60), zigzag(60, rough / 2)))  # 1 % of the scale is added to both
     assert found == pytest.approx(expected, abs=1e-9)
 
@@ -168,7 +168,7 @@ def switching(number: int, low: float = 0.0, high: float = 1.0, size: int = 101)
 
 
 @pytest.mark.parametrize(("number", "expected"), [(1, 0.0), (2, 0.1), (6, 0.5), (11, 1.0), (60, 1.0)])
-def test_the_strength_of_chatter_is_the_growth_of_the_share_of_switches(number: int, expected: float) -> None:
+def test_chatter_strength_is_the_growth_of_switches(number: int, expected: float) -> None:
     assert strength("chatter", pair(switching(1), switching(number))) == pytest.approx(expected)
     assert strength("chatter", pair(switching(number), switching(1))) == 0.0
 
@@ -177,15 +177,13 @@ def test_the_strength_of_chatter_is_the_growth_of_the_share_of_switches(number: 
     ("low", "high", "expected"),
     [(-2.0, 0.0, 0.5), (-3.0, -1.0, 0.0), (-1.0, 0.0, 0.5), (-0.5, 1.0, 0.0), (-3.0, -2.0, 0.0)],
 )
-def test_a_switch_crosses_the_middle_of_the_range_in_both_worlds(
-    low: float, high: float, expected: float
-) -> None:
+def test_switch_crosses_the_middle_in_both_worlds(low: float, high: float, expected: float) -> None:
     designed = array(-3.0, [-3.0] * 50, [1.0] * 50)  # the middle is -1, which is not above itself
     shift = strength("chatter", pair(designed, switching(6, low, high)))
     assert shift == pytest.approx(expected)
 
 
-def test_chatter_needs_six_values_and_at_least_two_different_values() -> None:
+def test_chatter_needs_six_values() -> None:
     assert strength("chatter", pair(switching(1), switching(3, size=6))) == 1.0
     assert strength("chatter", pair(switching(1), switching(3, size=5))) == 0.0
     assert strength("chatter", pair(np.ones(101), np.ones(101))) == 0.0
@@ -228,7 +226,7 @@ def test_loss_soon_after_a_jump_is_due_to_it(loss: int, expected: float) -> None
     assert strength("jumps", found) == pytest.approx(expected)
 
 
-def test_the_strength_is_the_share_of_the_losses_that_follow_a_jump() -> None:
+def test_strength_is_the_share_of_losses_after_a_jump() -> None:
     assert strength("jumps", Pair(series(step(120)), series(step(60), lost_at(60, 5, 32)))) == pytest.approx(
         0.45
     )
@@ -255,13 +253,13 @@ def test_jumps_are_found_in_the_step_of_the_value() -> None:
     assert strength("jumps", Pair(series(step(120)), late)) == 0.0
 
 
-def test_pairs_without_designed_steps_and_values_of_zero_have_no_jumps() -> None:
+def test_zero_values_have_no_jumps() -> None:
     known = Pair(series(step(120)), series(step(60), lost_at(60, 31)))
     assert strength("jumps", known, Pair(EMPTY, series(step(60)))) == pytest.approx(0.975)
     assert strength("jumps", Pair(series(np.zeros(120)), series(step(60), lost_at(60, 31)))) == 0.0
 
 
-def test_a_designed_mission_without_values_does_not_count_as_a_large_value() -> None:
+def test_empty_mission_has_no_large_value() -> None:
     none = Series(np.zeros(0), np.zeros(0, np.int32), np.zeros(120))
     steady = Pair(series(np.full(120, 0.1)), series(step(60)))
     found = Pair(none, series(step(60, high=0.05), lost_at(60, 31)))
@@ -368,12 +366,12 @@ def test_a_swing_crosses_its_mean_three_times() -> None:
     assert strength("swing", pair(at_rest(40), array(np.zeros(40), square(1.0, 10, 20, 10)))) == 0.0
 
 
-def test_a_value_that_touches_its_mean_does_not_cross_it() -> None:
+def test_touching_the_mean_is_no_crossing() -> None:
     late = array([1, 1, 0, 1, 1, 0, 1, 1, 0, 1, 1, -2, -2, -2, -2])
     assert strength("swing", pair(at_rest(15), array(np.zeros(15), late))) == 0.0
 
 
-def test_a_value_that_alternates_or_stays_constant_does_not_swing() -> None:
+def test_alternating_value_does_not_swing() -> None:
     assert strength("swing", pair(at_rest(40), array(np.zeros(40), square(1.0, *[1] * 40)))) == 0.0
     assert strength("swing", pair(at_rest(40), np.zeros(80))) == 0.0
     assert strength("swing", pair(np.zeros(80), array(np.zeros(40), square(1.0, *[10] * 4)))) == 0.0
@@ -401,15 +399,13 @@ FLAT = thirds(1.0, 1.0, 1.0)
     ("start", "end", "expected"),
     [(1.0, 1.2, 0.2 / 2.2 / 0.2), (1.0, 1.0, 0.0), (1.2, 1.0, 0.0), (2.0, 3.0, 1.0), (1.0, 9.0, 1.0)],
 )
-def test_the_strength_of_running_away_is_the_growth_of_the_size(
-    start: float, end: float, expected: float
-) -> None:
+def test_runaway_strength_is_the_growth_of_size(start: float, end: float, expected: float) -> None:
     middle = end  # the second half has one value, then, and is on one side
     assert strength("runaway", pair(FLAT, thirds(start, middle, end))) == pytest.approx(expected)
     assert strength("runaway", pair(FLAT, -thirds(start, middle, end))) == pytest.approx(expected)
 
 
-def test_growth_in_the_designed_world_is_subtracted_but_shrinking_is_not() -> None:
+def test_designed_growth_is_subtracted() -> None:
     drifted = thirds(1.0, 1.2, 1.2)
     assert strength("runaway", pair(thirds(1.0, 1.1, 1.1), drifted)) == pytest.approx(
         (0.2 / 2.2 - 0.1 / 2.1) / 0.2
@@ -417,7 +413,7 @@ def test_growth_in_the_designed_world_is_subtracted_but_shrinking_is_not() -> No
     assert strength("runaway", pair(thirds(9.0, 1.0, 0.0), drifted)) == pytest.approx(0.2 / 2.2 / 0.2)
 
 
-def test_a_value_that_changes_sign_has_a_weaker_runaway_symptom() -> None:
+def test_sign_change_weakens_a_runaway() -> None:
     drifted = array([1.0] * 3, [9.0, 3.0], [-1.0, 3.0, -1.0, 3.0])
     assert strength("runaway", pair(FLAT, drifted)) == pytest.approx(1.4 / np.sqrt(29 / 5))
 
@@ -427,13 +423,13 @@ def test_only_the_outer_thirds_are_compared() -> None:
     assert strength("runaway", pair(np.ones(11), grown)) == pytest.approx(0.2 / 2.2 / 0.2)
 
 
-def test_running_away_needs_six_values_some_of_them_not_zero() -> None:
+def test_running_away_needs_six_values() -> None:
     assert strength("runaway", pair(np.ones(6), thirds(1.0, 9.0, 9.0, part=2))) == 1.0
     assert strength("runaway", pair(np.ones(5), array(1.0, 1.0, 9.0, 9.0, 9.0))) == 0.0
     assert strength("runaway", pair(FLAT, np.zeros(9))) == 0.0
     assert strength("runaway", pair(np.zeros(9), np.zeros(9))) == 0.0
 
 
-def test_missions_are_compared_up_to_the_end_of_the_shorter_mission() -> None:
+def test_missions_are_compared_up_to_the_shorter_end() -> None:
     longer = array(thirds(1.0, 1.2, 1.2), [99.0] * 9)
     assert strength("runaway", pair(FLAT, longer)) == pytest.approx(0.2 / 2.2 / 0.2)

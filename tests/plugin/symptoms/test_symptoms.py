@@ -61,7 +61,7 @@ def test_a_symptom_is_strong_where_its_cause_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", SYMPTOMS)
 @pytest.mark.parametrize("case", CASES)
-def test_behaviour_that_also_occurs_in_the_designed_world_is_not_a_symptom(name: str, case: str) -> None:
+def test_designed_behaviour_is_no_symptom(name: str, case: str) -> None:
     both = series(CASES[case][1])
     assert SYMPTOMS[name]([Pair(both, both)]) == 0.0
 
@@ -94,7 +94,7 @@ def failing(steps: int, at: int) -> Floats:
     return reward
 
 
-def test_losses_soon_after_jumps_are_distinguished_from_losses_at_any_time() -> None:
+def test_losses_after_jumps_differ_from_other_losses() -> None:
     speed = np.zeros(STEPS)
     speed[30:] = 1.0
     designed = series(speed)
@@ -111,7 +111,7 @@ def test_a_first_command_is_a_jump_from_rest() -> None:
     assert SYMPTOMS["jumps"]([Pair(designed, series(np.array([0.9, 0.9]), failing(2, 1)))]) > 0.8
 
 
-def test_a_value_that_jumps_all_the_time_by_design_causes_no_loss() -> None:
+def test_constantly_jumping_value_causes_no_loss() -> None:
     pair = Pair(series(relay(2)), series(relay(2)[:50], failing(50, 49)))
     assert SYMPTOMS["jumps"]([pair]) < 0.1
 
@@ -120,7 +120,7 @@ def test_an_error_that_vanishes_early_is_not_an_offset() -> None:
     assert SYMPTOMS["offset"]([Pair(series(NEARING), series(NEARING[:20], failing(20, 19)))]) < 0.1
 
 
-def test_a_value_far_from_zero_by_design_has_no_offset() -> None:
+def test_value_far_from_zero_has_no_offset() -> None:
     assert SYMPTOMS["offset"]([Pair(series(wandering()), series(wandering() + 0.9))]) < 0.3
 
 

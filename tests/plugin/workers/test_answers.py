@@ -74,7 +74,7 @@ def reason(message: bytes) -> str:
     return str(raised.value)
 
 
-def test_a_worker_that_collects_no_test_gives_the_reason_once() -> None:
+def test_empty_worker_gives_the_reason_once() -> None:
     answers = io.BytesIO()
     server = worker.Server({"nodeid": "test_x.py::test_x", "instruments": {}}, io.BytesIO(), answers)
     server.pytest_collectreport(SimpleNamespace(failed=False, longreprtext="fine"))  # type: ignore[arg-type]
@@ -87,7 +87,7 @@ def test_a_worker_that_collects_no_test_gives_the_reason_once() -> None:
 
 
 @pytest.mark.parametrize("marked", [True, False])
-def test_after_its_first_episode_a_worker_never_reports_that_its_preparation_failed(
+def test_prepared_worker_never_reports_a_failed_preparation(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, marked: bool
 ) -> None:
     marker = "@pytest.mark.tarl(nodes=['n.py'], sensors=[Sensor('x')])\n" if marked else ""
@@ -127,7 +127,7 @@ def test_after_its_first_episode_a_worker_never_reports_that_its_preparation_fai
         (ValueError("odd"), TarlError, "(?s)failed in a worker process:.*ValueError: odd"),
     ],
 )
-def test_the_answer_of_a_worker_contains_the_exception_of_its_episode(
+def test_answer_contains_the_episode_exception(
     raised: BaseException, error: type[TarlError], says: str
 ) -> None:
     def rollout(_: object) -> None:

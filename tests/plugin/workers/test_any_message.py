@@ -100,9 +100,7 @@ def test_any_result_arrives_as_it_was_sent(run: EpisodeRun) -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.binary(max_size=20), max_size=4), st.data())
-def test_a_stream_that_breaks_off_ends_with_the_last_whole_message(
-    messages: list[bytes], data: st.DataObject
-) -> None:
+def test_broken_stream_ends_with_a_whole_message(messages: list[bytes], data: st.DataObject) -> None:
     pipe, ends = io.BytesIO(), []
     for message in messages:
         protocol.write(pipe, message)

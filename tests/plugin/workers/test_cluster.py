@@ -46,9 +46,7 @@ def waited(file: Path) -> str:
         return str(client.scheduler.address)
 
 
-def test_a_cluster_gives_the_same_recording_even_if_a_process_dies(
-    tank: pytest.Pytester, scheduler: str
-) -> None:
+def test_cluster_recording_survives_a_dead_process(tank: pytest.Pytester, scheduler: str) -> None:
     tank.runpytest_subprocess(*RECORD).assert_outcomes(passed=1)
     alone = fixture_file(tank).read_bytes()
     fixture_file(tank).unlink()

@@ -23,7 +23,7 @@ def recorded(tank: pytest.Pytester, *flags: str) -> bytes:
     return fixture_file(tank).read_bytes()
 
 
-def test_the_recording_does_not_depend_on_the_number_of_workers(tank: pytest.Pytester) -> None:
+def test_recording_does_not_depend_on_workers(tank: pytest.Pytester) -> None:
     alone = recorded(tank)
     fixture_file(tank).unlink()
     assert recorded(tank, "--tarl-workers=3") == alone
@@ -83,19 +83,19 @@ def test_episode_that_kills_workers_keeps_the_old_recording(
     assert fixture_file(tank).read_bytes() == before
 
 
-def test_errors_of_a_test_in_a_worker_are_reported_by_the_run(tank: pytest.Pytester) -> None:
+def test_worker_test_errors_are_reported(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "pass")
     tank.runpytest(*RECORD, TWO).stdout.fnmatch_lines(["*The test never called tarl.reward*"])
 
 
-def test_a_test_that_skips_itself_in_a_worker_is_skipped(tank: pytest.Pytester) -> None:
+def test_worker_skip_skips_the_test(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "    for _ in", "    pytest.skip('no pump today')\n    for _ in")
     skipped = tank.runpytest(*RECORD, TWO, "-rs")
     skipped.assert_outcomes(skipped=1, deselected=1)
     skipped.stdout.fnmatch_lines(["*no pump today*"])
 
 
-def test_the_reason_why_a_worker_cannot_prepare_its_test_is_reported(tank: pytest.Pytester) -> None:
+def test_unprepared_worker_gives_the_reason(tank: pytest.Pytester) -> None:
     tank.makeconftest("import sys\nassert 'worker_main' not in sys.argv[0], 'not in a worker'\n")
     tank.runpytest(*RECORD, TWO).stdout.fnmatch_lines(["*not in a worker*"])
 
@@ -120,7 +120,7 @@ def test_worker_has_the_fixtures_and_options_of_the_run(
     assert "test_fills" in (tank.path / "out.xml").read_text()
 
 
-def test_a_plugin_that_the_run_blocks_is_not_imported_by_a_worker(
+def test_blocked_plugin_is_not_imported_by_workers(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tank.makepyfile(noisy="raise SystemExit('the blocked plugin was imported')")
@@ -182,9 +182,7 @@ def slow_tank(tank: pytest.Pytester) -> pytest.Pytester:
 
 @pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL], ids=["Ctrl-C", "kill -9"])
-def test_an_aborted_run_keeps_the_old_recording_and_leaves_no_process(
-    slow_tank: pytest.Pytester, how: signal.Signals
-) -> None:
+def test_aborted_run_leaves_no_process(slow_tank: pytest.Pytester, how: signal.Signals) -> None:
     before = fixture_file(slow_tank).read_bytes()
     run = started(slow_tank, TWO)
     while not (slow_tank.path / "begun").exists():

@@ -54,7 +54,7 @@ class Contested(io.BytesIO):
         raise ValueError("I/O operation on closed file")
 
 
-def test_two_threads_may_end_a_worker_at_the_same_time() -> None:
+def test_two_threads_may_end_a_worker() -> None:
     process = Process()
     process.stdin, process.stdout = Contested(), Contested()
     one = worker(process)
@@ -104,9 +104,7 @@ def test_each_message_of_a_worker_resets_its_silence_counter() -> None:
 
 
 @pytest.mark.parametrize(("checks", "ended"), [(3, False), (4, True), (9, True)])
-def test_a_worker_is_ended_after_a_number_of_silent_checks(
-    checks: int, ended: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_silent_worker_is_ended(checks: int, ended: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pool, "SILENCE", 3)
     one = worker(Process())
     one._asked = True
@@ -142,7 +140,7 @@ def test_the_error_states_how_a_worker_ended() -> None:
         held.ask(b"request")
 
 
-def test_a_worker_that_cannot_prepare_its_test_gives_the_reason() -> None:
+def test_unprepared_test_gives_the_reason() -> None:
     with pytest.raises(pool.TarlError, match="no marker"):
         worker(Process(protocol.error_message(pool.TarlError("no marker")))).greet()
 
@@ -161,7 +159,7 @@ class Idle:
         self.said.append("ended")
 
 
-def test_closing_a_pool_waits_for_idle_workers_and_ends_busy_ones() -> None:
+def test_closing_a_pool_ends_busy_workers() -> None:
     workers: list[Any] = [Idle() for _ in range(4)]
     one = Pool()
     one._idle = {POST: workers[:2], Post("/x", "", b""): workers[2:3]}

@@ -22,7 +22,7 @@ PLACES = Instruments({Path("/a/node.py"): {(3, 5): 7, (4, 1): 8}}, frozenset({8,
 
 
 @pytest.mark.parametrize("ini", [True, False])
-def test_a_worker_gets_the_options_and_paths_of_the_run(
+def test_worker_gets_options_and_paths(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, ini: bool
 ) -> None:
     if ini:

@@ -80,7 +80,7 @@ def test_a_plan_survives_transport_to_a_worker(plan: EpisodePlan) -> None:
 
 
 @pytest.mark.parametrize("threads", [False, True])
-def test_the_result_of_an_episode_survives_transport_from_a_worker(threads: bool) -> None:
+def test_episode_result_survives_transport(threads: bool) -> None:
     run = replace(RUN, trace=trace(threads=threads))
     found = protocol.answered(PLAN, protocol.run_message(run))
     for one in fields(EpisodeRun):
@@ -101,7 +101,7 @@ def test_the_result_of_an_episode_survives_transport_from_a_worker(threads: bool
     "error",
     [RecordingError("no"), protocol.SkippedError("rain"), protocol.EndedError("enough"), TarlError("x")],
 )
-def test_an_error_of_a_worker_keeps_its_class_and_text(error: TarlError) -> None:
+def test_worker_error_keeps_class_and_text(error: TarlError) -> None:
     message = protocol.error_message(error)
     for read in (protocol.refused, lambda one: protocol.answered(PLAN, one)):
         with pytest.raises(type(error)) as raised:

@@ -195,7 +195,7 @@ class Rollout:
         return replace(RUN, plan=plan, trace=replace(found, thread=thread))
 
 
-def test_sites_get_their_recorded_numbers_and_new_sites_are_dropped() -> None:
+def test_sites_get_their_recorded_numbers() -> None:
     rollout = RenumberedRollout(Rollout(threads=True), np.array([5, -1, 0], np.int32))  # type: ignore[arg-type]
     found = rollout(EpisodePlan(1)).trace
     assert found.site.tolist() == [5, 0]

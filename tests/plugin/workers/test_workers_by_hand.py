@@ -69,7 +69,7 @@ def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., tuple[Worke
         one._log.close()
 
 
-def test_a_worker_is_a_process_in_the_folder_of_the_run(start: Any) -> None:
+def test_worker_is_a_process_in_the_run_folder(start: Any) -> None:
     one, _, given = start()
     assert given["command"] == [sys.executable, str(pool.WORKER_MAIN), POST.start]
     assert pool.WORKER_MAIN.is_file()
@@ -101,7 +101,7 @@ def test_a_worker_is_ready_after_its_greeting(start: Any, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("hangs", [False, True])
-def test_a_dismissed_worker_gets_time_to_tear_down_and_is_then_ended(start: Any, hangs: bool) -> None:
+def test_dismissed_worker_gets_time_to_tear_down(start: Any, hangs: bool) -> None:
     one, process, _ = start(hangs=hangs)
     written: list[bytes] = []
     process.stdin.close = lambda: written.append(process.stdin.getvalue())
@@ -120,7 +120,7 @@ def test_a_worker_whose_pipe_is_closed_can_be_dismissed(start: Any) -> None:
     assert "kill" in process.signals
 
 
-def test_a_worker_that_ended_is_awaited_before_its_last_output_is_read(start: Any) -> None:
+def test_ended_worker_is_awaited_first(start: Any) -> None:
     one, process, _ = start(hangs=True)
     one._log.write("first\n\xfc last\n\n".encode("latin-1"))
     with pytest.raises(WorkerDiedError, match=r"^ended with status 3: \ufffd last$"):
@@ -143,9 +143,7 @@ def test_worker_ended_by_the_watchdog_hung(start: Any, status: int, held: bool) 
         one.ask(b"request")
 
 
-def test_a_silent_worker_is_killed_even_if_it_ignores_the_signal(
-    start: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_silent_worker_is_killed(start: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pool, "SILENCE", 0)
     one, process, _ = start(hangs=True)
     one._asked = True
@@ -212,7 +210,7 @@ def willing(monkeypatch: pytest.MonkeyPatch) -> Any:
     return kind
 
 
-def test_a_worker_is_greeted_once_and_serves_only_its_own_job(willing: Any) -> None:
+def test_worker_serves_only_its_own_job(willing: Any) -> None:
     one, other = Pool(), Post("/other", "{}", b"first")
     answers = [one.serve(post, b"x") for post in (POST, POST, other, POST)]
     assert answers == [b"x0", b"x0", b"x1", b"x0"]
@@ -223,7 +221,7 @@ def test_a_worker_is_greeted_once_and_serves_only_its_own_job(willing: Any) -> N
 
 
 @pytest.mark.parametrize("error", [TarlError("no marker"), WorkerHeldError("a.py:3"), KeyboardInterrupt()])
-def test_an_episode_whose_error_would_occur_again_is_not_retried(willing: Any, error: BaseException) -> None:
+def test_repeatable_error_is_not_retried(willing: Any, error: BaseException) -> None:
     willing.failing = error
     one = Pool()
     with pytest.raises(type(error)):
@@ -285,7 +283,7 @@ def test_local_workers_end_with_the_test(monkeypatch: pytest.MonkeyPatch, fails:
     ]
 
 
-def test_the_workers_of_a_cluster_are_used_if_an_address_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_address_selects_cluster_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     log: list[str] = []
 
     @contextmanager
@@ -346,7 +344,7 @@ def dask(monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any], dict[str, int]]:
     return log, threads
 
 
-def test_a_run_uses_all_threads_of_the_cluster_and_leaves_it(dask: tuple[list[Any], dict[str, int]]) -> None:
+def test_run_uses_all_cluster_threads(dask: tuple[list[Any], dict[str, int]]) -> None:
     log, _ = dask
     with cluster.joined("tcp://x:1") as (remote, workers):
         assert workers == 5
@@ -544,7 +542,7 @@ def test_heartbeats_are_sent_until_the_run_has_ended(monkeypatch: pytest.MonkeyP
     assert not server.turn.locked()
 
 
-def test_the_caches_of_a_run_are_not_written_by_its_workers() -> None:
+def test_workers_do_not_write_caches() -> None:
     removed: list[str] = []
     manager = SimpleNamespace(unregister=lambda name: removed.append(name))
     session: Any = SimpleNamespace(config=SimpleNamespace(pluginmanager=manager))
@@ -677,7 +675,7 @@ def test_a_worker_reports_a_failed_configuration_to_the_run(
     assert done["served"] == (5, 6, None, f"{type(problem).__name__}: {problem}")
 
 
-def test_the_pipes_of_a_worker_are_out_of_reach_of_its_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_worker_pipes_are_hidden_from_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
     log: list[Any] = []
     monkeypatch.setattr(os, "dup", lambda one: 10 + one)
     monkeypatch.setattr(os, "open", lambda *given: log.append(("open", *given)) or 20)

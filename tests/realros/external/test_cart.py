@@ -42,7 +42,7 @@ def run(folder: Path, *options: str, **environment: str) -> str:
     return done.stdout + done.stderr
 
 
-def test_the_verdict_is_the_same_with_each_ros_although_the_simulator_fails(tmp_path: Path) -> None:
+def test_verdict_is_the_same_with_each_ros(tmp_path: Path) -> None:
     verdicts = {}
     for kind, flags in KINDS.items():
         folder = write(tmp_path / kind)
@@ -64,7 +64,7 @@ def test_the_verdict_is_the_same_with_each_ros_although_the_simulator_fails(tmp_
     assert verdicts["lock-step"] == verdicts["external"] == verdicts["in-process"]
 
 
-def test_a_reset_keeps_the_process_and_puts_the_cart_back(tmp_path: Path) -> None:
+def test_reset_keeps_the_process(tmp_path: Path) -> None:
     found = []
     for _ in range(2):
         arguments = setup(

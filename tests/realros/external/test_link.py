@@ -18,7 +18,7 @@ pytestmark = [
 LIMIT = 300.0  # s; long enough for a busy machine
 
 
-def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_answer_does_not_overtake_messages(monkeypatch: pytest.MonkeyPatch) -> None:
     from diagnostic_msgs.srv import SelfTest
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
@@ -70,7 +70,7 @@ def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: py
     assert all(one["sent"] >= events[-1]["asked"] for one in events if one["kind"] == "message")
 
 
-def test_a_step_is_handled_after_all_commands_that_were_sent_before_it(
+def test_step_is_handled_after_sent_commands(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from diagnostic_msgs.srv import SelfTest

@@ -32,7 +32,7 @@ def run(folder: Path, *options: str) -> str:
     return done.stdout + done.stderr
 
 
-def test_in_process_real_and_external_ros_give_the_same_verdict(tmp_path: Path) -> None:
+def test_all_kinds_of_ros_give_one_verdict(tmp_path: Path) -> None:
     verdicts = {}
     for kind, flags in KINDS.items():
         folder = write(tmp_path / kind, external=kind == "external")

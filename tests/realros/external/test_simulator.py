@@ -85,16 +85,14 @@ def expected(count: int, pump: float = 1.0) -> list[float]:
 
 
 @pytest.mark.parametrize("fault", ["", "late", "slow 1.5"])
-def test_a_stepped_simulator_is_reproducible_even_if_it_is_slow_or_late(tmp_path: Path, fault: str) -> None:
+def test_slow_stepped_simulator_is_reproducible(tmp_path: Path, fault: str) -> None:
     with Run(tmp_path, {"FAULT": fault}, **STEPPED) as run:
         began = run.ros.scheduler.time
         assert run.steps(6) == expected(6)
         assert run.ros.scheduler.time - began == 600_000_000
 
 
-def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_nodes_follow_a_free_running_clock(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with Run(tmp_path, {"OWN_TIME": "1"}) as run:
         levels = run.steps(30)
         assert max(levels) > 0.5
@@ -163,9 +161,7 @@ def test_the_error_describes_a_stepped_simulator_that_hangs(tmp_path: Path) -> N
     ("fault", "patience", "said"),
     [("hang 5", 1.0, "hung at .* nothing new came within 1 s"), ("jump 5", 300.0, "went back from")],
 )
-def test_the_error_describes_a_simulator_whose_own_clock_stops_or_jumps(
-    tmp_path: Path, fault: str, patience: float, said: str
-) -> None:
+def test_error_describes_a_stopped_clock(tmp_path: Path, fault: str, patience: float, said: str) -> None:
     with (
         pytest.raises(SimulatorLostError, match=said),
         Run(tmp_path, {"FAULT": fault, "OWN_TIME": "1"}, patience=patience) as run,
@@ -173,9 +169,7 @@ def test_the_error_describes_a_simulator_whose_own_clock_stops_or_jumps(
         run.steps(50)
 
 
-def test_the_output_belongs_to_its_episode_and_does_not_show_the_interrupt(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_output_belongs_to_its_episode(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     last = "import atexit; atexit.register(print, 'drained')\n"
     program = tmp_path / "chatty.py"
     program.write_text(last + PROGRAM.read_text())

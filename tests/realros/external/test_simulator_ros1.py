@@ -74,7 +74,7 @@ def test_a_reset_keeps_the_process_for_the_next_episode(tmp_path: Path) -> None:
         assert second.simulator._client is client
 
 
-def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(tmp_path: Path) -> None:
+def test_nodes_follow_a_free_running_ros1_clock(tmp_path: Path) -> None:
     with Run(tmp_path, {"OWN_TIME": "1"}, command=COMMAND) as run:
         before = run.simulator.clock
         run.steps(5)
@@ -82,7 +82,7 @@ def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(tmp_path:
 
 
 @pytest.mark.parametrize("fault", ["die 4", "leave 4"])
-def test_the_error_of_a_dead_simulator_contains_its_last_output(tmp_path: Path, fault: str) -> None:
+def test_dead_simulator_error_has_its_last_output(tmp_path: Path, fault: str) -> None:
     with (
         Run(tmp_path, {"FAULT": fault}, command=COMMAND, **STEPPED) as run,
         pytest.raises(SimulatorLostError, match=r"ended with status 3 .*out of water"),
