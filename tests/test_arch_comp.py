@@ -37,25 +37,31 @@ def _greatest(values: np.ndarray, first: int, last: int) -> list[float]:
     return [one.max() if one.size else -np.inf for one in windows]
 
 
-def test_full_throttle_uses_all_gears() -> None:
+def test_full_throttle_reaches_the_speeds_that_falstar_published_for_the_transmission() -> None:
     from arch_formulas import AUTOMATIC_TRANSMISSION
     from arch_models import AT_STEP, automatic_transmission
 
     out = automatic_transmission(np.tile([100.0, 0.0], (round(30 / AT_STEP) + 1, 1)))
     assert [*dict.fromkeys(out["gear"].tolist())] == [1.0, 2.0, 3.0, 4.0]
-    assert out["speed"][round(20 / AT_STEP)] == pytest.approx(120.5, abs=0.5)
-    assert -1.0 < AUTOMATIC_TRANSMISSION["AT1"](out) < 0.0
-    assert AUTOMATIC_TRANSMISSION["AT2"](out) > 0.0
+    assert AUTOMATIC_TRANSMISSION["AT1"](out) == pytest.approx(-0.2133, abs=0.01)
+    assert out["speed"].max() == pytest.approx(135.0 + 2.9802, abs=0.01)
+    assert -25.0 < AUTOMATIC_TRANSMISSION["AT2"](out) < -10.0
 
 
-def test_followers_keep_their_distance() -> None:
+def test_the_cars_violate_their_requirements_as_the_published_inputs_do() -> None:
+    from arch_formulas import CHASING_CARS
     from arch_models import CC_STEP, chasing_cars
 
-    out = chasing_cars(np.tile([0.3, 0.3], (round(100 / CC_STEP) + 1, 1)))
-    gaps = [out[f"y{car}"] - out[f"y{car - 1}"] for car in range(2, 6)]
-    assert all(gap[0] == 10.0 for gap in gaps)
-    assert gaps[0].max() < 21.0
-    assert out["y1"][-1] < -50.0  # the leader approaches the speed 1
+    def run(*inputs: tuple[float, float]) -> dict[str, float]:
+        """Return the robustness of each formula; each input lasts equally long, 100 s in all."""
+        steps = round(100 / CC_STEP)
+        out = chasing_cars(np.repeat(inputs, steps // len(inputs), axis=0)[[*range(steps), -1]])
+        return {name: robustness(out) for name, robustness in CHASING_CARS.items()}
+
+    # FalStar, results/quest2019-journal/instance1/cc.csv
+    assert run((0.5, 0.0), (1.0, 1.0))["CC1"] == pytest.approx(-44.1251, rel=0.01)
+    assert run((0.0, 1.0), (0.5, 0.0))["CC2"] == pytest.approx(-5.0)
+    assert min(run((0.5, 0.5)).values()) > 0.0
 
 
 def test_turbine_keeps_its_rated_speed() -> None:

@@ -8,6 +8,10 @@ Sources, as cited by the category's reports (Ernst et al., ARCH-COMP 2020, EPiC 
 - Wind turbine: Schuler, Adegas, Anta, Hybrid modelling of a wind turbine, ARCH 2016, with the data of the NREL 5 MW
   turbine.
 
+The shift logic and the modes of the cars follow the Simulink models with which participants of the competition run
+(AT/Autotrans_shift.mdl and CC/cars.mdl of MasWag/FalCAuN-ARCH-COMP, commit e8b40ee). tests/test_arch_comp.py compares
+both models with published figures of the participant FalStar.
+
 Each function takes inputs of shape (steps, inputs) and returns outputs by name, each of shape (steps,).
 """
 
@@ -21,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Signal = NDArray[np.float64]
-AT_STEP, CC_STEP, WT_STEP = 0.02, 0.02, 0.02  # s
+AT_STEP, CC_STEP, WT_STEP = 0.01, 0.01, 0.02  # s
 
 # Automatic transmission: engine torque in ft lb as a function of throttle in % and speed in rpm
 ENGINE_THROTTLE = (0, 20, 30, 40, 50, 60, 70, 80, 90, 100)
@@ -81,7 +85,8 @@ GEARS = (2.393, 1.45, 1.0, 0.677)
 ENGINE_INERTIA, VEHICLE_INERTIA, FINAL_DRIVE = 0.021991488283555904, 12.0941, 3.23
 DRAG, ROLLING = 0.02, 40.0  # road load in ft lb: DRAG · mph² + ROLLING
 MPH = 2 * pi * 60 / 5280  # mph per rpm of a wheel with a radius of 1 ft
-SHIFT_DELAY = 0.08  # s
+SHIFT_EVERY = 4  # steps between two decisions of the shift logic
+SHIFT_WAIT = 2  # decisions that must repeat a request before the gear changes
 
 
 def line(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
@@ -100,31 +105,39 @@ def engine_torque(throttle: float, rpm: float) -> float:
     return one + (throttle - low) / (high - low) * (other - one)
 
 
+def drive_rates(rpm: float, wheel: float, gear: int, throttle: float, brake: float) -> tuple[float, float]:
+    """Return the rates of change of the engine's speed and of the wheels' speed, in rpm/s; `gear` counts from 0."""
+    ratio = FINAL_DRIVE * wheel * GEARS[gear] / rpm
+    impeller = (rpm / line(RATIOS, CAPACITY, ratio)) ** 2
+    out = impeller * line(RATIOS, TORQUE_RATIO, ratio) * GEARS[gear]
+    load = brake + ROLLING + DRAG * (MPH * wheel) ** 2
+    engine = (engine_torque(throttle, rpm) - impeller) / ENGINE_INERTIA
+    return engine, (FINAL_DRIVE * out - (load if wheel >= 0.0 else -load)) / VEHICLE_INERTIA
+
+
 def automatic_transmission(inputs: Signal) -> Mapping[str, Signal]:
     """Return `speed` in mph, `rpm` and `gear`, from throttle in % (0 to 100) and brake torque in ft lb (0 to 325)."""
-    rpm, wheel, gear, waited = 1000.0, 0.0, 0, 0.0  # gears count from 0
-    pending = 0
+    rpm, wheel, gear = 1000.0, 0.0, 0  # gears count from 0
+    requested, waited = 0, 0
     speeds, rpms, gears = (np.empty(len(inputs)) for _ in range(3))
     for step, (throttle, brake) in enumerate(inputs.tolist()):
         speed = MPH * wheel
+        if step % SHIFT_EVERY == 0:
+            wanted = 0
+            if gear < 3 and speed > line(UP_THROTTLE, UP[gear], throttle):
+                wanted = 1
+            elif gear > 0 and speed < line(DOWN_THROTTLE, DOWN[gear - 1], throttle):
+                wanted = -1
+            waited = waited + 1 if wanted and wanted == requested else 0
+            requested = wanted
+            if waited == SHIFT_WAIT:
+                gear, waited, requested = gear + wanted, 0, 0
         speeds[step], rpms[step], gears[step] = speed, rpm, gear + 1
-        wanted = 0
-        if gear < 3 and speed > line(UP_THROTTLE, UP[gear], throttle):
-            wanted = 1
-        elif gear > 0 and speed < line(DOWN_THROTTLE, DOWN[gear - 1], throttle):
-            wanted = -1
-        waited = waited + AT_STEP if wanted and wanted == pending else 0.0
-        pending = wanted
-        if wanted and waited >= SHIFT_DELAY:
-            gear, waited, pending = gear + wanted, 0.0, 0
-        turbine_speed = FINAL_DRIVE * wheel * GEARS[gear]
-        ratio = min(max(turbine_speed / rpm, 0.0), RATIOS[-1])
-        impeller = (rpm / line(RATIOS, CAPACITY, ratio)) ** 2
-        out = impeller * line(RATIOS, TORQUE_RATIO, ratio) * GEARS[gear]
-        load = brake + ROLLING + DRAG * speed * speed
-        rpm += AT_STEP * (engine_torque(throttle, rpm) - impeller) / ENGINE_INERTIA
-        rpm = min(max(rpm, 600.0), 6000.0)
-        wheel += AT_STEP * (FINAL_DRIVE * out - (load if speed >= 0.0 else -load)) / VEHICLE_INERTIA
+        engine, wheels = drive_rates(rpm, wheel, gear, throttle, brake)
+        half = min(max(rpm + AT_STEP / 2 * engine, 600.0), 6000.0)  # midpoint method
+        engine, wheels = drive_rates(half, wheel + AT_STEP / 2 * wheels, gear, throttle, brake)
+        rpm = min(max(rpm + AT_STEP * engine, 600.0), 6000.0)
+        wheel += AT_STEP * wheels
     return {"speed": speeds, "rpm": rpms, "gear": gears}
 
 
@@ -134,22 +147,24 @@ CHASING, KEEPING, BRAKING = range(3)
 def chasing_cars(inputs: Signal) -> Mapping[str, Signal]:
     """Return the positions `y1` to `y5` of five cars, from throttle and brake of the first (0 to 1).
 
-    The first car drives towards lower values. Every other car chases the car in front until the distance is 10. Then it
-    keeps its speed: at a distance of 15 it chases again, and at a distance of 5 it brakes until the distance is 20.
+    The first car drives towards lower values. Every other car begins by keeping its distance. At a distance of 15 it
+    chases the car in front until the distance is 10; at a distance of 5 it brakes until the distance is 20. As in the
+    model of the competition, a car that keeps its distance drives backwards with its last speed.
     """
-    places, speeds, modes = [0.0, 10.0, 20.0, 30.0, 40.0], [0.0] * 5, [CHASING] * 5
+    places, speeds, modes = [0.0, 10.0, 20.0, 30.0, 40.0], [0.0] * 5, [KEEPING] * 5
     found = np.empty((5, len(inputs)))
     for step, (throttle, brake) in enumerate(inputs.tolist()):
         found[:, step] = places
         before = list(places)
         for car in range(5):
+            ahead = 1.0
             if car == 0:
                 push = throttle - brake * speeds[0]
             else:
-                gap = before[car] - before[car - 1]
-                modes[car] = _mode(modes[car], gap)
+                modes[car] = _mode(modes[car], before[car] - before[car - 1])
                 push = {CHASING: 1.0, KEEPING: 0.0, BRAKING: -speeds[car]}[modes[car]]
-            places[car] -= CC_STEP * speeds[car]
+                ahead = -1.0 if modes[car] == KEEPING else 1.0
+            places[car] -= CC_STEP * ahead * speeds[car]
             speeds[car] += CC_STEP * push
     return {f"y{car + 1}": found[car] for car in range(5)}
 

@@ -5,7 +5,7 @@
 Inputs are piecewise constant (instance 2 of the category). AT has 6 values of the throttle and 6 of the brake
 over 30 s; CC has 20 of each over 100 s. WT has a value of the wind every 5 s over 630 s, with linear
 interpolation. Each value is a direction of the space. A drift counts as one simulation; repeated episodes of
-it are not counted, since nothing is random.
+it are not counted, since nothing is random. The method `explored` first tries inputs that are constant over time.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import argparse
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from pathlib import Path
 from statistics import fmean, median
 
@@ -74,6 +75,17 @@ class Model:
             for place in range(count)
         }
         return Space(spans, {})
+
+    def constant(self, draws: np.random.Generator) -> list[Point]:
+        """Return the points whose inputs are constant: each at an end or at its usual value, in random order."""
+        levels = product(*(sorted({low, high, usual}) for _, low, high, usual in self.inputs))
+        points: list[Point] = []
+        for chosen in levels:
+            values = [
+                level for level, (count, *_) in zip(chosen, self.inputs, strict=True) for _ in range(count)
+            ]
+            points.append(dict(zip(self.space.extents, values, strict=True)))
+        return [points[int(at)] for at in draws.permutation(len(points))]
 
     def signals(self, values: Sequence[float]) -> Signal:
         """Return the inputs over time, shape (steps, inputs)."""
@@ -154,7 +166,10 @@ def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int
 
 
 def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
-    """Return the number of simulations that a search of many directions needs: Hypothesis, then CMA-ES."""
+    """Return the number of simulations that a search of many directions needs; None if the limit does not suffice.
+
+    Constant inputs come first, then Hypothesis, then CMA-ES.
+    """
     runs, space = Simulations(model, robustness, limit), model.space
     coordinates = Coordinates(space, space.nominal)
 
@@ -162,6 +177,8 @@ def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int
         return runs.value(coordinates.point(vector))
 
     try:
+        for point in model.constant(generator(seed, "constant inputs")):
+            runs.value(point)
         generate(space, episode_seed(seed, "hypothesis", 0), limit // 3, runs.value)
         best = min(runs.known, key=lambda values: runs.known[values])
         start = coordinates.vector(dict(zip(space.extents, best, strict=True)))
