@@ -14,7 +14,7 @@ import argparse
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import islice, product
 from pathlib import Path
 from statistics import fmean, median
 
@@ -46,6 +46,7 @@ from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.search import explore
+from pytest_tarl.stressing.spreading import spread
 
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the ranges
 _NONE = np.zeros(0, np.int32)
@@ -168,7 +169,7 @@ def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int
 def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
     """Return the number of simulations that a search of many directions needs; None if the limit does not suffice.
 
-    Constant inputs come first, then Hypothesis, then CMA-ES.
+    Constant inputs come first. A Halton sequence and Hypothesis then use a sixth of the limit each, CMA-ES the rest.
     """
     runs, space = Simulations(model, robustness, limit), model.space
     coordinates = Coordinates(space, space.nominal)
@@ -179,7 +180,10 @@ def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int
     try:
         for point in model.constant(generator(seed, "constant inputs")):
             runs.value(point)
-        generate(space, episode_seed(seed, "hypothesis", 0), limit // 3, runs.value)
+        largest = float(np.linalg.norm(np.maximum(-coordinates.low, coordinates.high)))
+        for vector in islice(spread(coordinates, generator(seed, "spread")), limit // 6):
+            margin(largest * vector)
+        generate(space, episode_seed(seed, "hypothesis", 0), limit // 6, runs.value)
         best = min(runs.known, key=lambda values: runs.known[values])
         start = coordinates.vector(dict(zip(space.extents, best, strict=True)))
         while True:

@@ -8,13 +8,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import inf, isclose
+from math import inf
 
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import chains
 from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, SIZES, SPENT, Evaluator
-from pytest_tarl.stressing.findings import APART, Curve, Failure, MarginMap, confirmed, contains, failure
+from pytest_tarl.stressing.findings import (
+    APART,
+    Curve,
+    Failure,
+    MarginMap,
+    confirmed,
+    contains,
+    failure,
+    place_on,
+)
 from pytest_tarl.stressing.guarantee import Part, recorded_mean
 from pytest_tarl.stressing.nearest import AGAIN, EXPECTED, LARGEST, ROUNDS, Nearest
 from pytest_tarl.stressing.rate_tests import RateTests
@@ -153,10 +162,9 @@ class Together:
 
     def _along(self, found: Failure, evaluator: Evaluator) -> None:
         """Add a confirmed failure along a single direction to the curve of that direction."""
-        (name,) = found.names
         for curve in self.curves:
-            t = found.distance / curve.ray.length
-            if curve.ray.names == (name,) and isclose(curve.ray.value(t), found.point[name]):
+            t = place_on(curve.ray, found)
+            if t is not None:
                 curve.evidence[t] = evaluator.examine(curve.ray.point(t), QUICK)
                 curve.confirm(t)
 

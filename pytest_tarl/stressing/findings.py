@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isclose
 from typing import Any
 
 from pytest_tarl.spaces import Point, Space, Span
@@ -229,10 +229,19 @@ class Stress:
     def nearer(self) -> Failure | None:
         """Return the nearest unconfirmed drift that fails according to the model.
 
-        Return None if a confirmed failure is about as near or nearer.
+        Return None if a confirmed failure is about as near or nearer. Skip drifts of a single direction with a
+        boundary, which says more about that direction.
         """
         limit = min((one.distance for one in self.failures), default=inf)
-        return next((one for one in self.expected if one.distance < NEARER * limit), None)
+        bounded = [one.ray for one in self.curves if one.boundary is not None]
+        return next(
+            (
+                one
+                for one in self.expected
+                if one.distance < NEARER * limit and all(place_on(ray, one) is None for ray in bounded)
+            ),
+            None,
+        )
 
     @property
     def failures(self) -> tuple[Failure, ...]:
@@ -243,6 +252,13 @@ class Stress:
     def every_failure(self) -> tuple[Failure, ...]:
         """Return all confirmed failures, nearest first, including the farther ones along each single direction."""
         return _sorted([*self.failures, *farther(self.curves)])
+
+
+def place_on(ray: Ray, one: Failure) -> float | None:
+    """Return where a failure lies on the ray of a single direction, or None if it lies elsewhere."""
+    t = one.distance / ray.length
+    alone = one.names == ray.names and len(ray.names) == 1
+    return t if alone and isclose(ray.value(t), one.point[ray.names[0]]) else None
 
 
 def failure(space: Space, point: Point) -> Failure:

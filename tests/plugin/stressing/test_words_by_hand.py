@@ -212,6 +212,17 @@ def test_expected_failure_must_be_clearly_nearer() -> None:
     ]
 
 
+def test_an_expected_failure_of_one_direction_is_printed_only_if_the_direction_has_no_boundary() -> None:
+    alone, both = combined(mud=2.0), combined(mud=3.0, slope=1.0)  # distances 0.5 and 0.56
+    bounded, suspicious = curve(MUD, GOOD, confirmed=0.75), curve(MUD, GOOD)
+    told = "The guarantee probably already fails with mud={} (distance {}); this is not confirmed."
+    assert [*words.together(stress(suspicious, expected=(alone, both)))] == [told.format("2", "0.5")]
+    assert [*words.together(stress(bounded, expected=(alone, both)))] == [
+        told.format("3 and slope=1", "0.56")
+    ]
+    assert stress(bounded, expected=(alone,)).nearer is None
+
+
 @pytest.mark.parametrize(
     ("changed", "alone"),
     [
