@@ -151,6 +151,12 @@ def uses_of(
     return tuple(one for one in operands if parameter.setting in _keys(analysis, one))
 
 
+def is_table(order: Order, operand: Operand) -> bool:
+    """Return whether an operand is a whole table of parameters, which no factor can change."""
+    key = key_of(parameter(order.analysis, operand)) if operand.value is None else ""
+    return bool(key) and any(f"/{key}/" in name for name in order.online.recorded.parameters)
+
+
 def reads_one(analysis: Analysis, operand: Operand) -> bool:
     """Return whether an operand is the call that reads one parameter."""
     return bool(_key_of_call(analysis, operand))

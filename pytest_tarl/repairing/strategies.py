@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pytest_tarl import seeds
 from pytest_tarl.model import Guard
-from pytest_tarl.repairing.file_parameters import file_parameters, reads_one, uses_of
+from pytest_tarl.repairing.file_parameters import file_parameters, is_table, reads_one, uses_of
 from pytest_tarl.repairing.labels import quantities
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.name_scopes import name_scope
@@ -131,7 +131,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
         found |= dict.fromkeys(given, best)
     found |= _given_to_several(analysis, found, ranks)
     ordered = sorted(found, key=lambda o: found[o])
-    kept = quantities(analysis, dict.fromkeys(ordered))
+    kept = [one for one in quantities(analysis, dict.fromkeys(ordered)) if not is_table(order, one)]
     return tuple(sorted(_with_parameters(order, kept), key=writing))
 
 
@@ -176,7 +176,7 @@ def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ..
     The operands in `ranked`, which the slices rank, are left out.
     """
     known = set(ranked)
-    new = [one for one in _aside(order.analysis) if one not in known]
+    new = [one for one in _aside(order.analysis) if one not in known and not is_table(order, one)]
     return tuple(sorted(quantities(order.analysis, new), key=writing))
 
 

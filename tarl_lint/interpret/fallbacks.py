@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Final
 
@@ -16,14 +17,20 @@ CONVERSIONS: Final = frozenset(["float", "int"])
 def of_entry(ctx: Interpreter, expr: ir.Expr, value: Value) -> ir.Const | None:
     """Return the default in `table.get("gain", 0.3)` if the default is a number and `table` is a parameter's value."""
     default = _default(expr)
-    return default if default is not None and _all_of_parameters(ctx.graph, value) else None
+    return default if default is not None and _ask(ctx.graph, value, _of_parameters) else None
 
 
-def entry(graph: Graph, expr: ir.Expr, value: Value) -> ir.Pos | None:
-    """Return the place of `table["gain"]` or `table.get("gain")` in an expression if a parameter is the table.
+def entry(ctx: Interpreter, expr: ir.Expr, value: Value) -> ir.Pos | None:
+    """Return the place of `table["gain"]` in an expression (see `entry_place`) if the table is an unknown parameter.
 
     Such an entry is a constant of its own: one parameter may be a table of many constants.
     """
+    pos = entry_place(expr)
+    return pos if pos is not None and _ask(ctx.graph, value, _of_tables) else None
+
+
+def entry_place(expr: ir.Expr) -> ir.Pos | None:
+    """Return the place of `table["gain"]` or `table.get("gain")`, also inside a conversion to a number, or None."""
     expr = _unconverted(expr)
     key: ir.Expr | None = None
     if isinstance(expr, ir.Item):
@@ -31,13 +38,21 @@ def entry(graph: Graph, expr: ir.Expr, value: Value) -> ir.Pos | None:
     elif isinstance(expr, ir.Call) and isinstance(expr.function, ir.Attribute) and len(expr.arguments) == 1:
         key = expr.arguments[0] if expr.function.name == "get" else None
     named = isinstance(key, ir.Const) and isinstance(key.value, str)
-    return expr.pos if named and _all_of_parameters(graph, value) else None
+    return expr.pos if named else None
 
 
-def _all_of_parameters(graph: Graph, value: Value) -> bool:
+def tables(graph: Graph) -> frozenset[tuple[str, ir.Pos]]:
+    """Return the places of parameters and of entries whose values are unknown: each may be a table."""
+    known = (
+        (node, graph.literals[node]) for node in (*graph.parameters, *graph.copies) if node in graph.literals
+    )
+    return frozenset((path, pos) for _, (value, pos, path) in known if value is None)
+
+
+def _ask(graph: Graph, value: Value, about: Callable[[Graph, Nodes], bool]) -> bool:
     if value.pts or not value.deps:
         return False
-    question = partial(_of_parameters, graph)
+    question = partial(about, graph)
     graph.reads.ask(question, value.deps)
     return question(value.deps)
 
@@ -64,12 +79,19 @@ def _default(expr: ir.Expr) -> ir.Const | None:
     return None
 
 
-def _of_parameters(graph: Graph, deps: Nodes) -> bool:
-    """Return whether all data of some nodes comes from parameters, unchanged."""
+def _of_tables(graph: Graph, deps: Nodes) -> bool:
+    """Return whether all data of some nodes comes from parameters of unknown value, unchanged."""
+    return _of_parameters(graph, deps, unknown=True)
+
+
+def _of_parameters(graph: Graph, deps: Nodes, unknown: bool = False) -> bool:
+    """Return whether all data of some nodes comes from parameters, unchanged; with `unknown`, from unknown values."""
     pending, seen = list(deps), set(deps)
     while pending:
         node = pending.pop()
         if node in graph.parameters and not graph.data[node]:
+            if unknown and graph.literals.get(node, ("",))[0] is not None:
+                return False
             continue
         if node not in graph.copies and node not in graph.carried:
             return False

@@ -213,7 +213,7 @@ def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame)
     default = fallbacks.of_entry(ctx, expr, value) if ctx.thorough else None
     if default is not None:
         ctx.graph.literals[node] = (default.value, default.pos, frame.program.path)
-    elif ctx.thorough and (pos := fallbacks.entry(ctx.graph, expr, value)) is not None:
+    elif ctx.thorough and (pos := fallbacks.entry(ctx, expr, value)) is not None:
         ctx.graph.copies.add(node)  # an entry of this entry is an entry of a parameter, too
         ctx.graph.literals[node] = (None, pos, frame.program.path)
     elif (_passes_on(ctx, expr) or _parameter_call(ctx, expr, value)) and not (

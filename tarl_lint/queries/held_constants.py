@@ -31,6 +31,7 @@ class Origins:
     def __init__(self, machine: Linker) -> None:
         self.machine = machine
         self.graph = machine.graph
+        self.tables = fallbacks.tables(machine.graph)
         self.topics: dict[Obj, frozenset[str]] = {}
         for record in machine.sources.values():
             for message in record.messages.values():
@@ -51,7 +52,8 @@ class Origins:
         if not value.deps:
             return frozenset()
         found = self._trace(value.deps, set())
-        if found and (pos := fallbacks.entry(self.graph, expr, value)) is not None:
+        pos = fallbacks.entry_place(expr)
+        if found and pos is not None and all((one.path, one.pos) in self.tables for one in found):
             return frozenset([Origin(None, "", pos)])
         return frozenset(found) if found is not None else frozenset()
 

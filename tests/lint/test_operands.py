@@ -35,6 +35,9 @@ NODE = """
             self.tilt = entries.get("tilt", 0.35)
             self.swing = float(entries.get("swing", -3))
             self.title = entries.get("title", "arm")
+            self.declare_parameter("side", "left")
+            self.declare_parameter("grip", 0.45)
+            self.side, self.grip = self.get("side"), self.get("grip")
             pid = rospy.get_param("~pid")
             self.p = pid["p"]
             self.i = float(pid["i"])
@@ -47,6 +50,8 @@ NODE = """
             self.mode = PRESETS[self.get_parameter("mode").value]["p"]
             self.out = self.create_publisher(F, "b", 10)
             self.create_subscription(F, "a", self.on, 10)
+        def get(self, name):
+            return self.get_parameter(name).value
         def on(self, msg):
             self.last = msg.data
             v = {expression}
@@ -78,6 +83,7 @@ NODE = """
         ("msg.data * self.d", [("self.d", None)]),
         ("msg.data * self.table['far']", [("self.table['far']", None)]),
         ("msg.data * self.reach", [("self.reach", None)]),
+        ("msg.data * self.grip if self.side in msg.name else 0.0", [("self.grip", 0.45), ("0.0", 0.0)]),
         ("[self.title, self.preset['label'], msg.data]", []),
         ("msg.data * self.preset['p']", [("self.preset['p']", None)]),
         ("msg.data * self.mode", [("self.mode", None)]),

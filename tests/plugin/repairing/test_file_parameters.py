@@ -185,9 +185,14 @@ def test_named_or_unset_parameters_are_not_added(tmp_path: Path) -> None:
 GROUPED = {
     "first": (
         'gains = rospy.get_param("~gains")\n        self.left = float(gains["gain_left"])\n'
-        '        self.right = gains["gain_right"]\n        self.offset = gains["offset_left"]'
+        '        self.right = gains["gain_right"]\n        self.offset = gains["offset_left"]\n'
+        "        self.gains = gains\n        self.more = More(self.gains)"
     ),
-    "use": "self.left",
+    "before": (
+        "class More:\n    def __init__(self, gains):\n        self.gains = gains\n\n"
+        '    def most(self, value):\n        return min(value, self.gains["gain_right"])\n\n'
+    ),
+    "use": "self.more.most(msg.data) + self.left",
     "added": "self.right + self.offset",
 }
 IN_A_GROUP = {name.replace("keeper/", "keeper/gains/"): value for name, value in READ.items()}
@@ -202,8 +207,9 @@ def test_an_entry_of_a_parameter_is_one_constant_at_its_use_and_in_the_file(tmp_
     assert set(in_files(order)) == {"offset_left", "offset_right"}
     every = {one.code: one for one in operands(order)}
     assert {"self.left", "self.right", "self.offset"} <= set(every)
-    one = every["self.right"]
-    assert parameter(order.analysis, one) == "gain_right"
+    for code in ("self.right", 'self.gains["gain_right"]'):
+        assert parameter(order.analysis, every[code]) == "gain_right"
+    assert not {"gains", "self.gains"} & set(every), every  # the whole table is no constant
     places = configured("gain_right", files_of_packages(order))
     (place,) = [place for place in places if place.path.endswith("params.yaml")]
     assert text[place.start : place.end] == "3.0"
