@@ -95,10 +95,10 @@ class WireScheduler(Scheduler):
         """Make the scheduler settle once more before time advances."""
         self.later(_nothing)
 
-    def _resume(self, task: Task, woken: bool) -> None:
+    def _resume(self, task: Task, woken: bool, error: BaseException | None = None) -> None:
         if self.enter is not None and not task.done and isinstance(task.process, Process):
             self.enter(task.process)
-        super()._resume(task, woken)
+        super()._resume(task, woken, error)
 
 
 def _nothing() -> None:

@@ -37,13 +37,13 @@ def test_all_changes_run_on_the_same_seeds() -> None:
 
 
 def test_paired_gains_cancel_seed_noise() -> None:
-    race = Race(mutations, Trials(run, 100), PAIRS)
+    race = Race(mutations, Trials(run, 100), GOAL)
     race.run(arms(2.0), 5)
     assert race.gains[arms(2.0)[0]] == pytest.approx(dict.fromkeys(range(5), 6 * math.log(2.0)))
 
 
 def test_refinement_adds_factors_in_between() -> None:
-    race = Race(mutations, Trials(run, 100), PAIRS)
+    race = Race(mutations, Trials(run, 100), GOAL)
     race.run(arms(1.5, 2.4, 5.0), 1)
     assert [arm.factor for arm in race.around(arms(2.4)[0])] == [round(math.sqrt(1.5 * 2.4), 3), 3.464]
     race.run(arms(2.41), 1)
