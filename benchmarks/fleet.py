@@ -34,16 +34,16 @@ from typing import Any
 
 import numpy as np
 
-from pytest_tarl.fleet.rows import Row, files
+from pytest_tarl.fleet.data_folder import Store, store
+from pytest_tarl.fleet.mission_rows import Row, files
 from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition
-from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning.fixture import Fixture, load, save
 from pytest_tarl.learning.guarantees import stated
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
-from pytest_tarl.observing.frames import LogFile
+from pytest_tarl.observing.log_format import LogFile
 from pytest_tarl.observing.writer import packed
 from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor, binning_digest

@@ -20,8 +20,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from fleet import ALARM, PLACES, recording
 
-from pytest_tarl.fleet import robots
-from pytest_tarl.fleet.engine import local
+from pytest_tarl.fleet import changed_robots
+from pytest_tarl.fleet.dask_tasks import local
 from pytest_tarl.fleet.partitions import bare, watched_chain
 from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.fixture import Fixture
@@ -81,8 +81,10 @@ def named(fixture: Fixture, sample: Sample, count: int, missions: int) -> dict[s
     names = [str(number) for number in range(count)]
     ends: Ints = np.arange(1, count + 1) * missions
     with local(1) as engine:
-        every = tuple(robots.watched(first, scored(sample, first.scale, missions), names, ends, engine, Q))
-    told = robots.named(every, Q)
+        every = tuple(
+            changed_robots.watched(first, scored(sample, first.scale, missions), names, ends, engine, Q)
+        )
+    told = changed_robots.named(every, Q)
     recorded = fixture.sample.total
     averages = sample.total.reshape(count, missions).mean(axis=1)
     z = (averages - recorded.mean()) / recorded.std(ddof=1) / np.sqrt(1 / missions + 1 / recorded.size)

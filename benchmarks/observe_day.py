@@ -25,7 +25,7 @@ from observe import SENSORS, Message, node
 
 from pytest_tarl.instrumentation.trace import Floats
 from pytest_tarl.observing import observer as observing
-from pytest_tarl.observing.frames import records, set_aside
+from pytest_tarl.observing.log_format import records, set_aside
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import Rotation, unpacked
 

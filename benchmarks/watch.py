@@ -33,7 +33,7 @@ from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.monitoring.monitor import Monitor, begun
-from pytest_tarl.observing.frames import MAGIC, encoded
+from pytest_tarl.observing.log_format import MAGIC, encoded
 from pytest_tarl.observing.stream import Chunk
 from pytest_tarl.observing.writer import steps_record
 from pytest_tarl.seeds import episode_seed, generator

@@ -14,7 +14,7 @@ from pytest_tarl.designation import Designation
 from pytest_tarl.drifts import sizes as drawn_sizes
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
-from pytest_tarl.learning import judgements, localize, parts
+from pytest_tarl.learning import judgements, localize, reward_parts
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
@@ -115,8 +115,8 @@ def run_online(
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
         notes=(*notes, *remarks.of_comparison(fixture, plan, offline, online, difference)),
-        parts=parts.means(offline, online),
-        lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
+        parts=reward_parts.means(offline, online),
+        lost=reward_parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
         stated={"offline": fixture.stated} if fixture.stated is not None else {},
         formulas=_formulas(designation, offline, online),

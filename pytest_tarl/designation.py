@@ -11,7 +11,7 @@ from typing import Any
 
 from pytest_tarl.drifts import Drift, drift
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.formulas.declared import ARGUMENTS, NOTHING_REQUIRED, Requirements, requirements
+from pytest_tarl.formulas.marker_arguments import ARGUMENTS, NOTHING_REQUIRED, Requirements, requirements
 from pytest_tarl.formulas.said import NOTHING_SAID, Said
 from pytest_tarl.options import number_within
 from pytest_tarl.promises import must_hold

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RecordingError, SettingsError, TarlError
 from pytest_tarl.faults.installing import Faults
-from pytest_tarl.formulas.declared import Requirements
+from pytest_tarl.formulas.marker_arguments import Requirements
 from pytest_tarl.situation import Situation
 
 if TYPE_CHECKING:

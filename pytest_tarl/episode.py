@@ -14,9 +14,9 @@ from pytest_tarl.ended_episode import EndedEpisode
 from pytest_tarl.errors import SettingsError, TarlError
 from pytest_tarl.faults.installing import NO_FAULTS, Faults
 from pytest_tarl.finalizers import run_finalizers
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
-from pytest_tarl.formulas.episode import EpisodeFormulas
 from pytest_tarl.formulas.judging import Judged
+from pytest_tarl.formulas.marker_arguments import NOTHING_REQUIRED, Requirements
+from pytest_tarl.formulas.running_episode import EpisodeFormulas
 from pytest_tarl.rewards import checked_reward
 from pytest_tarl.sensors import Sensor, as_number
 from pytest_tarl.situation import Situation

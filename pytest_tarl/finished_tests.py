@@ -11,7 +11,7 @@ import pytest
 from pytest_tarl.errors import FixtureError, TarlError
 from pytest_tarl.printable import printable
 from pytest_tarl.repeating import INTERRUPTS, finish
-from pytest_tarl.summary import attach
+from pytest_tarl.terminal_summary import attach
 
 if TYPE_CHECKING:
     from pytest_tarl.accounts import Account

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pytest_tarl.ros.messages.packages import could_be_package
+from pytest_tarl.ros.messages.package_modules import could_be_package
 from pytest_tarl.ros.standins import STANDINS
 
 

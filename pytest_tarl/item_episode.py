@@ -191,7 +191,7 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
     if isinstance(error, (TarlError, RequirementError)) and report.failed:
-        from pytest_tarl.ros.accounts import account
+        from pytest_tarl.ros.exception_texts import account
 
         report.longrepr = printable(account(error, item.path))
 
@@ -207,7 +207,7 @@ def add_notes(item: pytest.Item, report: pytest.TestReport) -> None:
 
 def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.ExceptionInfo[BaseException]:
     """Return the node's exception that caused a NodeError, so that a debugger stops in the node's code."""
-    from pytest_tarl.ros.accounts import of_node
+    from pytest_tarl.ros.exception_texts import of_node
 
     cause = excinfo.value.__cause__
     if not isinstance(excinfo.value, NodeError) or cause is None or cause.__traceback__ is None:

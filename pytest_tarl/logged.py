@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from pytest_tarl.errors import LogError
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.lookback import Followed, LookedBack, judgeable, left_out, looked_back
+from pytest_tarl.formulas.marker_arguments import NOTHING_REQUIRED, Requirements
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Floats, Trace
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.observing.frames import Record, records, set_aside
+from pytest_tarl.observing.log_format import Record, records, set_aside
 from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.sensors import binning_digest

@@ -31,7 +31,7 @@ from pytest_tarl.other_recordings import adopted, lost_design, unchecked
 from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repairing.request import Neighbour, Order
-from pytest_tarl.report import guarantees
+from pytest_tarl.report import guarantee_words
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
 from pytest_tarl.stressing.delivering import deliver, deliver_repairs
@@ -183,7 +183,7 @@ class Mission:
         if result.problem:
             return Account(tuple(f"  {note}" for note in result.notes), result.problem)
         written = self.fixture_path.relative_to(self.root)
-        bounds = [f"  {told}" for told in guarantees.sentences(result.stated)] if result.stated else []
+        bounds = [f"  {told}" for told in guarantee_words.sentences(result.stated)] if result.stated else []
         lines = [
             f"{self.test}: {result.line}",
             *bounds,

@@ -30,7 +30,7 @@ from pytest_tarl.model import Guarantee
 from pytest_tarl.modules_of_tests import Digests
 from pytest_tarl.options import Options
 from pytest_tarl.report.amounts import amount
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.report.words import SIGNIFICANT
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds

@@ -13,7 +13,7 @@ from numbers import Real
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.message_fields import dotted, field_value
+from pytest_tarl.field_paths import dotted, field_value
 from pytest_tarl.ros_names import objection
 from pytest_tarl.variables import prefixes
 

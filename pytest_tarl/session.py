@@ -20,7 +20,7 @@ from pytest_tarl.repeating import INTERRUPTS, BesideRollout, ItemRollout, defer_
 from pytest_tarl.scenarios import scenario, without_drift
 from pytest_tarl.selecting import check_drift, chosen, how_to_take, is_space, takes, with_space
 from pytest_tarl.sensors import Sensor
-from pytest_tarl.summary import Summary
+from pytest_tarl.terminal_summary import Summary
 
 if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter

@@ -12,7 +12,7 @@ from pytest_tarl.learning.bounds import Range, evidence_above
 from pytest_tarl.learning.guarantees import stated, varies
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 
 ENOUGH_FAILURES = 5  # minimum number of failures for a recording to stop early
 MOST = 20_000  # maximum number of episodes if a confidence is required

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import RecordingError, SettingsError
-from pytest_tarl.formulas.declared import Requirements
-from pytest_tarl.formulas.episode import EpisodeFormulas
+from pytest_tarl.formulas.marker_arguments import Requirements
+from pytest_tarl.formulas.running_episode import EpisodeFormulas
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.sensors import Cell, Sensor, reading
 

@@ -86,7 +86,7 @@ def test_uninstalled_source_tree_has_no_links(monkeypatch):
 
 def test_editor_links_a_code_to_its_page(monkeypatch):
     pytest.importorskip("lsprotocol")
-    from pytest_tarl.editor.findings import diagnostics
+    from pytest_tarl.editor.diagnostics import diagnostics
     from pytest_tarl.editor.positions import Places
     from tarl_lint.read.source import SourceError
 

@@ -14,8 +14,8 @@ from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.templates import contents, template
 from pytest_tarl.ros import install
-from pytest_tarl.ros.messages import definitions, find_class, known
-from pytest_tarl.ros.messages.packages import could_be_package
+from pytest_tarl.ros.messages import find_class, known, type_definitions
+from pytest_tarl.ros.messages.package_modules import could_be_package
 from pytest_tarl.ros.rospy import node as rospy_node
 from pytest_tarl.ros.standins import STANDINS
 from pytest_tarl.searching.accept import Outcome
@@ -142,7 +142,7 @@ def test_recipe_message_type_passes_its_test(monkeypatch: pytest.MonkeyPatch) ->
     (test,) = snippets("message.md", "python")
     assert could_be_package("depth_msgs")
     types = {**known.known_types("ros1", "msg"), **known._split(definition)}
-    monkeypatch.setattr(definitions, "known_types", lambda kind, part: types)
+    monkeypatch.setattr(type_definitions, "known_types", lambda kind, part: types)
     made(test, find_class=find_class, pytest=pytest).test_the_new_type_has_its_fields_and_constants()
 
 

@@ -6,9 +6,9 @@ from array import array
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.snapshot import field_names, is_message
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.type_definitions import Kind
 
 OF_ONE_GENERATION = {"seq"}  # fields of a header that only ROS 1 has
 

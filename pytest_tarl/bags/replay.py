@@ -11,10 +11,10 @@ from pytest_tarl.bags.channels import Recorded
 from pytest_tarl.bags.converting import class_named, converted
 from pytest_tarl.bags.reading import Bag
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
+from pytest_tarl.formulas.marker_arguments import NOTHING_REQUIRED, Requirements
 from pytest_tarl.ros.clock import nanoseconds, seconds
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.snapshot import type_name
-from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.sensors import Sensor, reading
 

@@ -13,7 +13,7 @@ from pytest_tarl.commands.targets import targets as found_targets
 from pytest_tarl.errors import RefusedError, RepairError
 from pytest_tarl.patching.changes import FilePatch, MisfitError, identical
 from pytest_tarl.patching.merge import combined, conflicts, separated
-from pytest_tarl.patching.reading import Patch, read
+from pytest_tarl.patching.patch_reader import Patch, read
 
 
 def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial: bool = False) -> list[str]:

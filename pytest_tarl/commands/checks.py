@@ -13,7 +13,7 @@ from pytest_tarl.commands.targets import Target
 from pytest_tarl.errors import RefusedError
 from pytest_tarl.files import read_regular
 from pytest_tarl.patching.changes import FilePatch
-from pytest_tarl.patching.reading import Patch
+from pytest_tarl.patching.patch_reader import Patch
 
 
 def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> None:

@@ -9,7 +9,7 @@ from pytest_tarl.learning.drift import outcomes, succeed_less
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.permutation import permuted_decreases
 from pytest_tarl.model import SitePlace
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.seeds import generator
 
 

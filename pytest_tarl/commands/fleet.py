@@ -218,7 +218,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
 
 
 def _fleet(arguments: argparse.Namespace) -> int:
-    from pytest_tarl.fleet import document, words
+    from pytest_tarl.fleet import json_result, words
     from pytest_tarl.fleet.question import Question, answer
 
     question = Question(
@@ -238,10 +238,10 @@ def _fleet(arguments: argparse.Namespace) -> int:
 
         html.write(found, arguments.html)
     if arguments.json == Path("-"):
-        sys.stdout.write(printable(document.text(found)))
+        sys.stdout.write(printable(json_result.text(found)))
     else:
         if arguments.json is not None:
-            _write(arguments.json, document.text(found))
+            _write(arguments.json, json_result.text(found))
         for line in words.lines(found):
             print(printable_line(line))
     return int(any(found.meets(rule) for rule in arguments.fail_if))

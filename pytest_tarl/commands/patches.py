@@ -62,7 +62,7 @@ def _revert(arguments: argparse.Namespace) -> int:
 def _suggest(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands.checks import whole
     from pytest_tarl.patching import suggesting
-    from pytest_tarl.patching.reading import read
+    from pytest_tarl.patching.patch_reader import read
 
     forms = {"markdown": suggesting.markdown, "github": suggesting.review, "sarif": suggesting.sarif}
     patch = read(arguments.patch)

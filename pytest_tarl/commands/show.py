@@ -10,7 +10,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.judgements import accounts
 from pytest_tarl.learning.tables import START, Floats, ListSample
 from pytest_tarl.model import TaintList
-from pytest_tarl.report.guarantees import percent, sentences
+from pytest_tarl.report.guarantee_words import percent, sentences
 from pytest_tarl.sensors import Sensor
 
 CODE = 60  # maximum number of characters of a line of code

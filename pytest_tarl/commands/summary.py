@@ -14,7 +14,7 @@ from pytest_tarl.commands import margins_diff
 from pytest_tarl.commands.margins_files import margins_in
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.files import read_regular
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.stressing.margin_changes import compared
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}

@@ -10,8 +10,8 @@ from pathlib import Path
 from pytest_tarl.errors import RepairError
 from pytest_tarl.files import read_regular
 from pytest_tarl.patching.changes import FilePatch, identical
-from pytest_tarl.patching.placing import located
-from pytest_tarl.patching.reading import Patch
+from pytest_tarl.patching.patch_reader import Patch
+from pytest_tarl.patching.patched_files import located
 
 
 @dataclass(frozen=True)

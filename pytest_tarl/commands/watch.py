@@ -12,7 +12,7 @@ from threading import Event
 from time import monotonic
 
 from pytest_tarl.errors import LogError, SettingsError
-from pytest_tarl.monitoring import dashboard, state, watch, words
+from pytest_tarl.monitoring import dashboard, watch, watch_state, words
 from pytest_tarl.monitoring.status import Status
 from pytest_tarl.monitoring.watch import Watch
 from pytest_tarl.printable import print_lines, printable, printable_line
@@ -45,7 +45,7 @@ def run(order: Order) -> int:
     Raise LogError if a log cannot be read under `once`; FixtureError, MonitorError or SettingsError for invalid input.
     """
     _check(order)
-    with state.locked(order.state), _stopped() as stopped:
+    with watch_state.locked(order.state), _stopped() as stopped:
         watched = watch.begun(order.logs, order.fixture, order.state, alpha=order.alpha, seed=order.seed)
         with closing(watched):
             teller = Teller(order, watched, stopped)

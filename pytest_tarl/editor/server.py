@@ -13,7 +13,7 @@ from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 from pygls.uris import to_fs_path
 
-from pytest_tarl.editor import findings, fixes, recorded
+from pytest_tarl.editor import diagnostics, fixes, recorded
 from pytest_tarl.editor.positions import Places
 from pytest_tarl.extras import missing_extra
 from tarl_lint.editing import Result, Superseded, Workspace
@@ -95,7 +95,7 @@ class Server(LanguageServer):
             self.kept = await loop.run_in_executor(None, recorded.read, self.root)
             self.result, self.places = result, Places(self.root, result.texts)
             self.shown_in = self.places
-            self._publish(findings.diagnostics(result, self.places))
+            self._publish(diagnostics.diagnostics(result, self.places))
         self._refresh()
 
     def buffers(self) -> dict[Path, str]:
@@ -134,7 +134,7 @@ class Server(LanguageServer):
         The diagnostics of other files may be outdated, because the text of these files may have changed.
         """
         self.shown_in = Places(self.root, result.texts)
-        found = findings.diagnostics(result, self.shown_in)
+        found = diagnostics.diagnostics(result, self.shown_in)
         for path in sorted({*found, *self.shown} & settled):
             self._show(path, found.get(path, []))
 
@@ -185,7 +185,7 @@ def _answers(made: Server) -> None:
     @made.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(resolve_provider=False))
     def lenses(ls: Server, asked: types.CodeLensParams) -> list[types.CodeLens]:
         path = ls.shown_path(asked.text_document.uri)
-        return findings.lenses(ls.result, path, ls.places) if path is not None and ls.result else []
+        return diagnostics.lenses(ls.result, path, ls.places) if path is not None and ls.result else []
 
     @made.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(ls: Server, asked: types.HoverParams) -> types.Hover | None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
-from pytest_tarl.faults.fields import store
+from pytest_tarl.faults.message_numbers import store
 from pytest_tarl.faults.topic import OFF_ON, Arrivals, Channel, TopicFault, require_text
-from pytest_tarl.message_fields import dotted, field_value
+from pytest_tarl.field_paths import dotted, field_value
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.faults.fields import altered, no_such_field
+from pytest_tarl.faults.message_numbers import altered, no_such_field
+from pytest_tarl.field_paths import dotted
 from pytest_tarl.finite_numbers import finite_number
-from pytest_tarl.message_fields import dotted
 from pytest_tarl.ros_names import objection
 from pytest_tarl.spaces import Choice, Span, span
 

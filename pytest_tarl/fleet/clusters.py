@@ -14,11 +14,11 @@ from math import erfc, sqrt
 
 import numpy as np
 
+from pytest_tarl.fleet.changed_robots import Robots
+from pytest_tarl.fleet.dask_tasks import Engine
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.engine import Engine
 from pytest_tarl.fleet.residual_maps import ResidualMap, designed, residual_maps
-from pytest_tarl.fleet.robots import Robots
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell

@@ -21,9 +21,9 @@ import pyarrow as pa
 
 from pytest_tarl.errors import FleetError, first_line
 from pytest_tarl.files import advice_on
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.partitions import Wanted
-from pytest_tarl.fleet.store import Store
 
 MEMORY = "1GB"  # memory limit; DuckDB moves rows that exceed it to the folder SPILLED
 SPILLED = Path(".tarl/fleet")

@@ -11,8 +11,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from pytest_tarl.errors import FleetError, first_line
+from pytest_tarl.fleet.data_folder import ADVICE, Store
 from pytest_tarl.fleet.schema import PREFIX, READABLE, Origin
-from pytest_tarl.fleet.store import ADVICE, Store
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pytest_tarl.fleet import robots
+from pytest_tarl.fleet import changed_robots
+from pytest_tarl.fleet.changed_robots import Robots
+from pytest_tarl.fleet.dask_tasks import Engine
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.engine import Engine
-from pytest_tarl.fleet.groups import Group
-from pytest_tarl.fleet.robots import Robots
+from pytest_tarl.fleet.mission_groups import Group
 from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.monitoring.monitor import Monitor
 
@@ -29,5 +29,5 @@ def judged(
     order = np.asarray(database.columns(IN_TIME)["number"]).astype(np.int64)
     ends = np.cumsum([group.missions for group in groups])
     names = [" ".join(group.values) for group in groups]
-    found = robots.watched(first, scores.ordered(order), names, ends, engine, q)
-    return robots.named(tuple(found), q)
+    found = changed_robots.watched(first, scores.ordered(order), names, ends, engine, q)
+    return changed_robots.named(tuple(found), q)

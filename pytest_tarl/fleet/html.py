@@ -16,14 +16,14 @@ from typing import Any
 
 from pytest_tarl.errors import FleetError
 from pytest_tarl.files import advice_on
-from pytest_tarl.fleet import decomposition_words, repair_words, words
-from pytest_tarl.fleet.groups import Group
+from pytest_tarl.fleet import decomposition_words, repair_effect_words, words
+from pytest_tarl.fleet.changed_robots import Robot, lower
+from pytest_tarl.fleet.mission_groups import Group
 from pytest_tarl.fleet.question import Answer
 from pytest_tarl.fleet.residual_maps import ResidualMap
-from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.report import html
 from pytest_tarl.report.json_result import finite
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 from pytest_tarl.sensors import Cell
 from tarl_lint.files import write_atomically
 
@@ -166,7 +166,8 @@ def _repairs(answer: Answer) -> Iterator[dict[str, Any]]:
             "verdict": one.verdict,
             "tag": TAGS.get(one.verdict, "no-difference"),
             "reward": f"{one.reward:+.3g}" if known else "",
-            "interval": repair_words.interval(one.reward_bound, 1) or repair_words.WHY.get(one.verdict, ""),
+            "interval": repair_effect_words.interval(one.reward_bound, 1)
+            or repair_effect_words.WHY.get(one.verdict, ""),
             "success": f"{100 * one.success:+.1f} points" if known else "",
             "missions": f"{one.missions[0]:,} with, {one.missions[1]:,} without",
         }

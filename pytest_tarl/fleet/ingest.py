@@ -13,13 +13,13 @@ from pathlib import Path
 from pytest_tarl.errors import LogError, RepairError, SettingsError
 from pytest_tarl.fleet import dataset
 from pytest_tarl.fleet.bag_missions import Replay, identified, is_bag, replayed
+from pytest_tarl.fleet.data_folder import Store, store
 from pytest_tarl.fleet.logged_samples import logged_samples
-from pytest_tarl.fleet.rows import Row, date, files, formulas_of
+from pytest_tarl.fleet.mission_rows import Row, date, files, formulas_of
 from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition, repair_path
-from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.monitoring.assembling import valid_time
-from pytest_tarl.patching.reading import read
+from pytest_tarl.patching.patch_reader import read
 
 TOGETHER = 20_000  # number of missions held in memory before they are written
 PATCH = ".patch"

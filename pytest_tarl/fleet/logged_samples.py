@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytest_tarl.errors import LogError, SettingsError
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.lookback import judgeable, looked_back
+from pytest_tarl.formulas.marker_arguments import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.parsing import formula
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning.fixture import Fixture

@@ -18,7 +18,7 @@ from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.learning.utility import batch
 from pytest_tarl.model import Guarantee
-from pytest_tarl.observing.frames import MAGIC
+from pytest_tarl.observing.log_format import MAGIC
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pytest_tarl.fleet import dataset
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.schema import cell_of, name_of
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
 from pytest_tarl.monitoring.scores import Scale, binned

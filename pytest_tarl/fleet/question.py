@@ -11,13 +11,21 @@ from datetime import date
 from pathlib import Path
 
 from pytest_tarl.errors import FleetError, SettingsError
-from pytest_tarl.fleet import clusters, dataset, decomposition, group_onsets, groups, repairs, robots
+from pytest_tarl.fleet import (
+    changed_robots,
+    clusters,
+    dataset,
+    decomposition,
+    group_onsets,
+    mission_groups,
+    repairs,
+)
+from pytest_tarl.fleet.dask_tasks import Engine, cluster, local
+from pytest_tarl.fleet.data_folder import Store, store
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
-from pytest_tarl.fleet.engine import Engine, cluster, local
 from pytest_tarl.fleet.schema import Origin, origin, repair_path
 from pytest_tarl.fleet.scores import scored
-from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load, parsed
 from pytest_tarl.monitoring.monitor import begun
 from pytest_tarl.sensors import Cell
@@ -59,9 +67,9 @@ class Answer:
     missions: int
     copies: int  # number of duplicate rows that were ignored
     cells: tuple[Cell, ...]
-    groups: tuple[groups.Group, ...]
-    onsets: robots.Robots  # for each robot, the evidence of a change and the time of that change
-    robots: robots.Robots
+    groups: tuple[mission_groups.Group, ...]
+    onsets: changed_robots.Robots  # for each robot, the evidence of a change and the time of that change
+    robots: changed_robots.Robots
     parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
@@ -136,8 +144,8 @@ def _judged(
     first = begun(fixture, alpha=alpha, seed=0)
     every_score = scored(database, where, first.scale, engine)
     cells = (*fixture.sample.cells, *every_score.others)
-    every = robots.judged(database, first, every_score, engine, alpha)
-    found = groups.judged(
+    every = changed_robots.judged(database, first, every_score, engine, alpha)
+    found = mission_groups.judged(
         database,
         where,
         fixture,

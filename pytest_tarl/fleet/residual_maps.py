@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pytest_tarl.fleet.changed_robots import Robot, lower
+from pytest_tarl.fleet.dask_tasks import Engine
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.engine import Engine
-from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.fleet.samples import following
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.residuals import Model, fitted, residuals
 from pytest_tarl.learning.tables import Floats, Sample, sum_by

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from pytest_tarl.fleet.dask_tasks import Engine
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.database import Columns, Database
-from pytest_tarl.fleet.engine import Engine
 from pytest_tarl.fleet.partitions import Transitions, bare, watched_chain
 from pytest_tarl.fleet.scores import transitions
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.sensors import Cell
 

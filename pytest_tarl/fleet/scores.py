@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pytest_tarl.fleet import partitions
+from pytest_tarl.fleet.dask_tasks import Engine
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.engine import Engine
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring.scores import Scale
 from pytest_tarl.sensors import Cell

@@ -13,7 +13,7 @@ import numpy as np
 
 from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.tables import Floats, Ints
-from pytest_tarl.monitoring import conformal, judging
+from pytest_tarl.monitoring import bet_updates, conformal
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.restarts import Processes, log_evidence
 
@@ -22,7 +22,7 @@ COLUMNS = 512  # number of processes judged together; their state fits into the 
 
 @dataclass(frozen=True)
 class Watched:
-    """Robots after all of their missions; columns are those of judging.py."""
+    """Robots after all of their missions; columns are those of bet_updates.py."""
 
     robots: Ints  # index of each robot in the whole fleet
     processes: Processes
@@ -49,7 +49,7 @@ class Watched:
 
     def state(self, place: int) -> tuple[Processes, Ints]:
         """Return the processes of one robot and its pool, of shape (scores, bins)."""
-        mine = judging.columns(self.bounds, self.scores, len(self.robots), place)
+        mine = bet_updates.columns(self.bounds, self.scores, len(self.robots), place)
         values = {one.name: getattr(self.processes, one.name)[..., mine] for one in fields(Processes)}
         return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
 
@@ -77,13 +77,13 @@ def _judged(
     first: Monitor, scores: Scores, robots: Ints, begins: Ints, counts: Ints, onsets: bool
 ) -> Watched:
     bounds, size = len(first.bounds), len(robots)
-    processes = judging.begun(first.processes.threshold, bounds, size)
+    processes = bet_updates.begun(first.processes.threshold, bounds, size)
     pool = np.tile(first.pool, (size, 1))
     for begin in range(0, int(counts.max()), conformal.TOGETHER):
         number = np.arange(begin, min(begin + conformal.TOGETHER, int(counts.max())))
         there = number[:, None] < counts
         mission = np.where(there, begins + number[:, None], 0)
-        pool = judging.judged(
+        pool = bet_updates.judged(
             first.bounds,
             processes,
             pool,

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from datetime import datetime, timezone
 
-from pytest_tarl.fleet import decomposition_words, repair_words
-from pytest_tarl.fleet.groups import MOST, Group
+from pytest_tarl.fleet import decomposition_words, repair_effect_words
+from pytest_tarl.fleet.changed_robots import Robot, lower
+from pytest_tarl.fleet.mission_groups import MOST, Group
 from pytest_tarl.fleet.question import Answer
-from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 
 NAMED = 20  # maximum number of robots listed
 
@@ -40,7 +40,7 @@ def lines(answer: Answer) -> Iterator[str]:
     yield from _clusters(answer, words)
     if answer.repairs:
         yield ""
-        yield from repair_words.lines(answer.repairs, answer.accepted)
+        yield from repair_effect_words.lines(answer.repairs, answer.accepted)
     if answer.parts is not None:
         yield ""
         yield from decomposition_words.lines(answer.parts)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pytest_tarl.errors import LogError
-from pytest_tarl.formulas.declared import Requirements
 from pytest_tarl.formulas.judging import Judge, Judged
+from pytest_tarl.formulas.marker_arguments import Requirements
 from pytest_tarl.formulas.parsing import Formula
 from pytest_tarl.formulas.signals import NANOSECONDS
 

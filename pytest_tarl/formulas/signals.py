@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.message_fields import dotted
+from pytest_tarl.field_paths import dotted
 from pytest_tarl.ros_names import objection
 from pytest_tarl.sensors import CALLED, as_number
 

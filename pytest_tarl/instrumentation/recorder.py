@@ -19,7 +19,7 @@ from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.entries import Entries, SharedEntries
 from pytest_tarl.instrumentation.events import Pairs, joined, limited, paired, sizes
 from pytest_tarl.instrumentation.magnitude import magnitude
-from pytest_tarl.instrumentation.threads import ThreadWatch
+from pytest_tarl.instrumentation.thread_starts import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 

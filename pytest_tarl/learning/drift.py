@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pytest_tarl.learning.bounds import Range, detectable_loss, loss_between
-from pytest_tarl.learning.evidence import gathered
 from pytest_tarl.learning.marginal import groups, left_out, projected
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.multiple_testing import holm
 from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_decreases
+from pytest_tarl.learning.residual_sums import gathered
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import Decreased, LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from pytest_tarl.monitoring.blocks import AtOnce, Block, Spot, end_of
+from pytest_tarl.monitoring.log_blocks import AtOnce, Block, Spot, end_of
 from pytest_tarl.monitoring.mission import Mission, Progress, Steps, Table, advanced
-from pytest_tarl.observing.frames import Record
+from pytest_tarl.observing.log_format import Record
 from pytest_tarl.sensors import Cell
 
 LATEST = 1e11  # seconds since 1970; a later time comes from a wrong clock

@@ -10,7 +10,7 @@ from typing import Any
 from pytest_tarl.errors import MonitorError
 from pytest_tarl.monitoring.status import Evidence, Moment, Status
 from pytest_tarl.monitoring.watch import Watch
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 from tarl_lint.files import write_atomically
 
 FORMAT_VERSION = 1  # 1: first version

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pytest_tarl.learning.tables import Floats, Ints
-from pytest_tarl.monitoring.blocks import Spot, end_of
+from pytest_tarl.monitoring.log_blocks import Spot, end_of
 from pytest_tarl.sensors import Cell
 
 

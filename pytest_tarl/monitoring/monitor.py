@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.monitoring import conformal, restarts
-from pytest_tarl.monitoring.judging import judged
+from pytest_tarl.monitoring.bet_updates import judged
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.restarts import Processes
 from pytest_tarl.monitoring.scores import WHOLE, Missions, Scale, binned, sampled, scale
@@ -112,7 +112,7 @@ class Monitor:
         time: Floats,
         new: Sequence[Cell] = (),
     ) -> None:
-        """Count missions whose processes judging.py has already updated; all arrays have shape (missions,)."""
+        """Count missions whose processes bet_updates.py has already updated; all arrays have shape (missions,)."""
         self.moments.add(self.counts.missions, time.tolist())
         self.counts.missions += len(passed)
         self.counts.passed += int(passed.sum())

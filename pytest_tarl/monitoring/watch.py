@@ -15,11 +15,11 @@ import numpy as np
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.fixture import load as load_fixture
-from pytest_tarl.monitoring import state
+from pytest_tarl.monitoring import watch_state
 from pytest_tarl.monitoring.assembling import Expected
+from pytest_tarl.monitoring.log_reader import LogReader
 from pytest_tarl.monitoring.mission import Mission, Progress, columns, latest
 from pytest_tarl.monitoring.monitor import PORTION, Monitor
-from pytest_tarl.monitoring.reading import LogReader
 from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
@@ -59,7 +59,7 @@ class Watch:
 
     def save(self) -> None:
         """Write the state. Raise MonitorError if the file cannot be written."""
-        state.save(self.path, self.monitor, self.known, self.digest)
+        watch_state.save(self.path, self.monitor, self.known, self.digest)
 
     def status(self) -> Status:
         """Return the status of the watch."""
@@ -86,7 +86,7 @@ def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed
     """
     loaded = load_fixture(fixture)
     digest = hashlib.sha256(fixture.read_bytes()).hexdigest()
-    monitor, known = state.load(path, loaded, digest, alpha=alpha, seed=seed)
+    monitor, known = watch_state.load(path, loaded, digest, alpha=alpha, seed=seed)
     expected = expectation(loaded, monitor)
     owners: dict[str, Path] = {}
     readers = tuple(LogReader(log, expected, known, owners) for log in logs)

@@ -8,7 +8,7 @@ from datetime import datetime
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.monitoring.status import Evidence, Moment, Score, Status
 from pytest_tarl.monitoring.watch import Watch
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 
 SCORES = {
     "success": "the success of missions",

@@ -16,7 +16,7 @@ from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.formulas.signals import Signal, signal_value
-from pytest_tarl.observing.frames import FORMAT
+from pytest_tarl.observing.log_format import FORMAT
 from pytest_tarl.observing.outlet import Outlet
 from pytest_tarl.observing.readers import binner, reader
 from pytest_tarl.observing.stream import Stream

@@ -12,7 +12,7 @@ from math import isfinite
 from operator import attrgetter
 from typing import Any
 
-from pytest_tarl.message_fields import field_value
+from pytest_tarl.field_paths import field_value
 from pytest_tarl.sensors import Sensor
 
 Read = Callable[[Any], Any]

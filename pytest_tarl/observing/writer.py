@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from pytest_tarl.instrumentation.trace import Floats, Ints
-from pytest_tarl.observing.frames import LogFile, Record
+from pytest_tarl.observing.log_format import LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Cut, chunk, merged
 from pytest_tarl.sensors import Cell
 

@@ -19,7 +19,7 @@ from time import monotonic
 from typing import Any
 
 from pytest_tarl.errors import LogError
-from pytest_tarl.observing.frames import LogFile
+from pytest_tarl.observing.log_format import LogFile
 from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 

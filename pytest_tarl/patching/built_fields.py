@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from pytest_tarl.patching.document import Document
-from pytest_tarl.patching.fields import in_integer_field
+from pytest_tarl.patching.integer_fields import in_integer_field
 
 FEWEST = 2  # minimum number of statements that write a field
 

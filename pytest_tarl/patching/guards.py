@@ -11,7 +11,7 @@ from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.absence import is_checked
 from pytest_tarl.patching.bindings import Constant, initial, is_bound
 from pytest_tarl.patching.document import Document
-from pytest_tarl.patching.expressions import rounded
+from pytest_tarl.patching.expression_texts import rounded
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.variables import prefixes
 

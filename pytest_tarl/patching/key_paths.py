@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.constant_definitions import Place
 
 _WILDCARDS = frozenset({"*", "**", "ros__parameters"})
 _MOST_FILES = 64  # maximum number of files whose keys are cached

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.changes import Replacement
 from pytest_tarl.patching.patch import BASE, SEAL, bytes_diff, split_lines
-from pytest_tarl.patching.reading import Patch
+from pytest_tarl.patching.patch_reader import Patch
 from pytest_tarl.patching.same_lines import agreed
 
 

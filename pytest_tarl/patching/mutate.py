@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.charts import Chart, distance
-from pytest_tarl.patching.definitions import ParameterInFile, Place
+from pytest_tarl.patching.constant_definitions import ParameterInFile, Place
 from pytest_tarl.patching.document import Document, document
-from pytest_tarl.patching.expressions import counting, rounded
-from pytest_tarl.patching.fields import in_integer_field
+from pytest_tarl.patching.expression_texts import counting, rounded
+from pytest_tarl.patching.integer_fields import in_integer_field
 from pytest_tarl.patching.structures import Form
 from tarl_lint.model import Operand
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.definitions import Place, literal_number, number_at
+from pytest_tarl.patching.constant_definitions import Place, literal_number, number_at
 from pytest_tarl.patching.document import Document, called, document, strings
 from tarl_lint.model import Operand
 

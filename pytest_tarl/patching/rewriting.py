@@ -11,10 +11,20 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.definitions import Place
-from pytest_tarl.patching.definitions import edits as definition_edits
+from pytest_tarl.patching.added_subscriptions import Subscriptions
+from pytest_tarl.patching.conditional_changes import (
+    Change,
+    branched,
+    choices,
+    doubled,
+    lazy,
+    neighbours,
+    replaced,
+)
+from pytest_tarl.patching.constant_definitions import Place
+from pytest_tarl.patching.constant_definitions import edits as definition_edits
 from pytest_tarl.patching.document import Document, Edit, apply_edits, apply_plain_edits
-from pytest_tarl.patching.expressions import negated, number, scaled, shifted
+from pytest_tarl.patching.expression_texts import negated, number, scaled, shifted
 from pytest_tarl.patching.guards import Reading, always, condition, held
 from pytest_tarl.patching.mutate import (
     Mutation,
@@ -24,9 +34,7 @@ from pytest_tarl.patching.mutate import (
     needs_integer,
     redefinition,
 )
-from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
 from pytest_tarl.patching.structures import Form, form_edits
-from pytest_tarl.patching.subscriptions import Subscriptions
 from pytest_tarl.patching.templates import PAIR, Template
 from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand, SiteId, Span

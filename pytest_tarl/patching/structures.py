@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, Edit, Function, Loop
-from pytest_tarl.patching.expressions import choice, fitted, number
+from pytest_tarl.patching.expression_texts import choice, fitted, number
 from pytest_tarl.patching.templates import FIELD, PAIR, Template, filled, plainly
 from pytest_tarl.patching.vocabulary import class_attributes, free, names
 from pytest_tarl.sensors import Sensor

@@ -14,7 +14,7 @@ from urllib.parse import quote
 
 from pytest_tarl.patching.changes import FilePatch, Replacement
 from pytest_tarl.patching.patch import BASE, SEAL
-from pytest_tarl.patching.reading import Patch
+from pytest_tarl.patching.patch_reader import Patch
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 RULE = "tarl-repair"  # the ids TARL001 to TARL999 belong to tarl-lint

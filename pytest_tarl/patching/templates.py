@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.patching.expressions import ARITHMETIC, ATOM, TERM, enclosed
+from pytest_tarl.patching.expression_texts import ARITHMETIC, ATOM, TERM, enclosed
 from pytest_tarl.symptoms.symptoms import SYMPTOMS
 
 if sys.version_info >= (3, 11):

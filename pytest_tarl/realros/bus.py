@@ -16,8 +16,8 @@ from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.keyboard import terminals
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.messages import find_class
-from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.snapshot import stamp_if_unset, translate, type_name
+from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks

@@ -12,7 +12,7 @@ from pytest_tarl.realros.lockstep import WireScheduler
 from pytest_tarl.realros.rclpy_network import RclpyNetwork
 from pytest_tarl.realros.rclpy_patches import patch
 from pytest_tarl.ros.bus import Topic
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.process import Process
 
 _DEPTH = 1_000  # queue depth of the world's publishers and subscriptions

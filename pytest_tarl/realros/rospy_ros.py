@@ -16,7 +16,7 @@ from pytest_tarl.realros.lockstep import WireScheduler
 from pytest_tarl.realros.rospy_network import RospyNetwork, mismatch, quiet_publisher
 from pytest_tarl.realros.rospy_patches import patch
 from pytest_tarl.ros.bus import Topic
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.process import Process
 
 

@@ -15,7 +15,7 @@ from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Rep
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.merge import CONSTANT
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.patching.reading import read
+from pytest_tarl.patching.patch_reader import read
 from pytest_tarl.patching.rewriting import guard_text
 from pytest_tarl.patching.suggesting import sarif
 from pytest_tarl.patching.verify import nothing_lost
@@ -26,7 +26,7 @@ from pytest_tarl.repairing.partial import Best
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.reviewing import remarks
 from pytest_tarl.repairing.template_forms import form_words
-from pytest_tarl.report import amounts, guarantees, next_commands, repair_words, words
+from pytest_tarl.report import amounts, guarantee_words, next_commands, repair_words, words
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
 from tarl_lint.files import write_atomically
@@ -236,7 +236,9 @@ def _stated(bounds: Mapping[str, Guarantee]) -> list[str]:
     """Return the guarantees for the repaired program in both worlds, as header lines."""
     names = {"repaired": "drifted and repaired", "nominal_repaired": "designed and repaired"}
     return [
-        f"bounds, {names[world]}: {told}" for world, one in bounds.items() for told in guarantees.brief(one)
+        f"bounds, {names[world]}: {told}"
+        for world, one in bounds.items()
+        for told in guarantee_words.brief(one)
     ]
 
 

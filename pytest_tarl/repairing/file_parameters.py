@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.definitions import (
+from pytest_tarl.patching.constant_definitions import (
     PARAMETER_CALLS,
     ParameterInFile,
     Place,

@@ -12,7 +12,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.instrumentation.datafiles import is_data
 from pytest_tarl.patching.merge import combined_diff, conflicts, constants
 from pytest_tarl.patching.patch import apply_command, write
-from pytest_tarl.patching.reading import Patch, read
+from pytest_tarl.patching.patch_reader import Patch, read
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.definitions import (
+from pytest_tarl.patching.constant_definitions import (
     Place,
     alternatives,
     computed_at,

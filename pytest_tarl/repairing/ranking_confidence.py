@@ -8,7 +8,7 @@ from pytest_tarl.model import OperandEffect
 from pytest_tarl.repairing.accepting import Accepted
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.report import amounts
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.searching.race import CONFIDENCE
 from pytest_tarl.searching.ranking import Ranking
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.charts import SHARE, Chart, offset
-from pytest_tarl.patching.definitions import ParameterInFile
+from pytest_tarl.patching.constant_definitions import ParameterInFile
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import is_integral
 from pytest_tarl.repairing.request import Order

@@ -9,7 +9,7 @@ from statistics import fmean
 
 from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.model import Comparison
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 
 CONFIDENCE = 0.95  # confidence of the interval around an average
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from pytest_tarl.model import Comparison, ListComparison
 from pytest_tarl.report.amounts import running_mean
-from pytest_tarl.report.regions import Vocabulary, runs
+from pytest_tarl.report.sensor_regions import Vocabulary, runs
 from pytest_tarl.report.words import designed_world
 from pytest_tarl.sensors import Cell, Sensor
 

@@ -17,7 +17,15 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.extras import install_command
 from pytest_tarl.files import advice_on
 from pytest_tarl.model import Comparison, ListComparison
-from pytest_tarl.report import amounts, formulas, guarantees, next_commands, repair_words, sizes, words
+from pytest_tarl.report import (
+    amounts,
+    drift_sizes,
+    formulas,
+    guarantee_words,
+    next_commands,
+    repair_words,
+    words,
+)
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import chart
 from tarl_lint.files import write_atomically
@@ -147,7 +155,9 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "world": comparison.drift or "deployed",
         "headline": words.verdict_sentence(comparison),
         "loss": words.loss_words(comparison),
-        "stated": [(name, list(guarantees.sentences(one))) for name, one in guarantees.worlds(comparison)],
+        "stated": [
+            (name, list(guarantee_words.sentences(one))) for name, one in guarantee_words.worlds(comparison)
+        ],
         "region": words.region_words(comparison),
         "paper_region": words.paper_region_words(comparison),
         "atr": {
@@ -158,7 +168,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
             _list(comparison, compared, figure)
             for compared, figure in zip(comparison.lists, drawn["utility"], strict=True)
         ],
-        "sizes": sizes.plots(comparison),
+        "sizes": drift_sizes.plots(comparison),
         "curves": _curves_in_words(drawn["curves"]),
         "clipped": _clipped(drawn["curves"]),
         "repair_words": repair_words.repair_words(comparison.repair) if comparison.repair else "",

@@ -24,8 +24,8 @@ from pytest_tarl.model import (
     Slice,
 )
 from pytest_tarl.report.amounts import atr, expected
-from pytest_tarl.report.regions import boxes
-from pytest_tarl.report.sizes import rows as size_rows
+from pytest_tarl.report.drift_sizes import rows as size_rows
+from pytest_tarl.report.sensor_regions import boxes
 from pytest_tarl.sensors import Cell, Sensor
 from tarl_lint.files import write_atomically
 

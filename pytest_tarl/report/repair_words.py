@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair
 from pytest_tarl.report.amounts import amount, atr
-from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.report.words import designed_world, world_name
 
 REASONS: dict[Reason, str] = {

@@ -9,11 +9,11 @@ from textwrap import wrap
 from pytest_tarl.model import Comparison, Culprit, ListComparison, Slice
 from pytest_tarl.report import (
     amounts,
+    drift_sizes,
     formulas,
-    guarantees,
+    guarantee_words,
     next_commands,
     repair_words,
-    sizes,
     slices,
     words,
 )
@@ -49,12 +49,12 @@ def _entries(
         "bounds",
         [
             f"{world}: {told}"
-            for world, one in guarantees.worlds(comparison)
-            for told in guarantees.brief(one)
+            for world, one in guarantee_words.worlds(comparison)
+            for told in guarantee_words.brief(one)
         ],
     )
     yield "loss", list(_loss(comparison))
-    yield "sizes", list(sizes.lines(comparison))
+    yield "sizes", list(drift_sizes.lines(comparison))
     yield "formula", list(formulas.lines(comparison))
     if comparison.verdict.result != "no difference":
         yield "parts", list(_parts(comparison))

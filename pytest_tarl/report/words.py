@@ -8,8 +8,8 @@ from pathlib import Path
 from pytest_tarl.learning.effect_size import effect_size
 from pytest_tarl.model import Comparison, LossInterval, Verdict
 from pytest_tarl.report.amounts import amount, deviations, p_value
-from pytest_tarl.report.guarantees import percent
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.guarantee_words import percent
+from pytest_tarl.report.sensor_regions import Vocabulary
 
 SIGNIFICANT = 0.05  # a loss is reported only if its p-value is at most this
 NEGLIGIBLE = 0.01  # a part of the reward is reported only if it has at least this share of the total loss

@@ -14,9 +14,9 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.files import advice_on
 from pytest_tarl.item_episode import Instruments
 from pytest_tarl.options import Options
-from pytest_tarl.resuming.conditions import changed, conditions
 from pytest_tarl.resuming.journal import Journal, TakenError, conditions_of
-from pytest_tarl.resuming.rollout import KeptRollout, scope_of
+from pytest_tarl.resuming.kept_rollout import KeptRollout, scope_of
+from pytest_tarl.resuming.run_conditions import changed, conditions
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.scenarios import scenario, without_drift
 from pytest_tarl.sensors import Sensor

@@ -9,8 +9,8 @@ from typing import Any, Protocol
 
 from pytest_tarl.errors import RecordingError, UnsupportedApiError
 from pytest_tarl.ros.clock import nanoseconds, seconds
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
-from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.names import absolute, given_name
 from pytest_tarl.ros.scheduler import Program, Scheduler, running_task
 from pytest_tarl.ros.services import Reply, ServiceDirectory

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.type_definitions import Kind
 
 _OF_KIND: Mapping[Kind, Mapping[str, str]] = {
     "ros1": {

@@ -14,7 +14,7 @@ from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
 from pytest_tarl.ros.keyboard import Terminal
 from pytest_tarl.ros.launch_sources import NOTHING, Given
-from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages import node_workspaces
 from pytest_tarl.ros.names import require_remapping
 from pytest_tarl.ros.process import Network, Process
 from pytest_tarl.ros.scheduler import Spinning, running_task
@@ -125,7 +125,7 @@ class Ros(Network):
 
         Without a workspace, load those in the folder of the test or beside it.
         """
-        workspace.search(folder, test)
+        node_workspaces.search(folder, test)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
         """Run a node's main program until it first waits. Raise NodeError if the program raises an exception."""

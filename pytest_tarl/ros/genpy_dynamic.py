@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from pytest_tarl.ros.messages import ros1
-from pytest_tarl.ros.messages.definitions import parse
+from pytest_tarl.ros.messages.type_definitions import parse
 
 __all__ = ["generate_dynamic"]
 

@@ -17,10 +17,10 @@ from pytest_tarl.ros.exiting import exits_of_nodes
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.interpreter_state import interpreter_kept
 from pytest_tarl.ros.keyboard import terminals
-from pytest_tarl.ros.messages.definitions import Kind
-from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
-from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
-from pytest_tarl.ros.messages.workspace import packages
+from pytest_tarl.ros.messages.installed_packages import asked_kind, installed_kind
+from pytest_tarl.ros.messages.node_workspaces import packages
+from pytest_tarl.ros.messages.package_modules import PARTS, could_be_package, is_package, package_module
+from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.missing import as_read_by, refuse, unsupported_module
 from pytest_tarl.ros.opencv_windows import windows_discarded
 from pytest_tarl.ros.reexports import is_reexported, reexported

@@ -16,7 +16,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import existing
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import WITH_TEXTS, parameters, python_files
-from pytest_tarl.ros.messages.workspace import on_forget, prefer, search, workspace_around
+from pytest_tarl.ros.messages.node_workspaces import on_forget, prefer, search, workspace_around
 from tarl_lint.node_names import node_name
 from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.folders import has_packages, workspace_root

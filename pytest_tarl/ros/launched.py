@@ -12,7 +12,7 @@ from typing import Any
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.ros.launch_choice import chosen
 from pytest_tarl.ros.launch_sources import NOTHING, Given, Source
-from pytest_tarl.ros.messages.workspace import on_forget, workspace_around
+from pytest_tarl.ros.messages.node_workspaces import on_forget, workspace_around
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.executables import is_python
 from tarl_lint.workspace.folders import folders

@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping
 from typing import Final
 
-from pytest_tarl.ros.messages.packages import PARTS
-from pytest_tarl.ros.messages.workspace import packages, workspaces
+from pytest_tarl.ros.messages.node_workspaces import packages, workspaces
+from pytest_tarl.ros.messages.package_modules import PARTS
 from pytest_tarl.ros.uninstalled import candidates
 
 PYTHON_2: Final = "This is Python 2, which no supported ROS uses: port the node to Python 3."

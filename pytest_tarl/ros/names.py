@@ -9,7 +9,7 @@ from typing import Any
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros import params_files
-from pytest_tarl.ros.literals import parse_value
+from pytest_tarl.ros.command_line_values import parse_value
 from pytest_tarl.ros_names import namespace_problem, node_problem, objection
 
 _PART = r"(?:[A-Za-z_]|\\[1-9])(?:[A-Za-z0-9_]|\\[1-9])*"

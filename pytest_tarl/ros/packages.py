@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pytest_tarl.ros.messages.workspace import package_folders, packages, workspaces
+from pytest_tarl.ros.messages.node_workspaces import package_folders, packages, workspaces
 
 __all__ = [
     "InvalidROSPkgException",

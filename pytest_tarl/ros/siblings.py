@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 
 from pytest_tarl.errors import UnsupportedModuleError
-from pytest_tarl.ros.messages.workspace import on_forget, packages
+from pytest_tarl.ros.messages.node_workspaces import on_forget, packages
 from tarl_lint.workspace.cfg_files import Configuration, configurations
 
 

@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import FrameType, ModuleType
 
-from pytest_tarl.ros.messages.workspace import on_forget, workspace_around, workspaces
+from pytest_tarl.ros.messages.node_workspaces import on_forget, workspace_around, workspaces
 from tarl_lint.workspace.folders import folders
 
 _MISSING = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "Exception", "BaseException"})

@@ -13,7 +13,7 @@ import pytest
 
 import pytest_tarl
 import tarl_lint
-from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages import node_workspaces
 from tests.plugin.tank import NODE, TEST
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -31,12 +31,12 @@ for package in (tarl_lint, pytest_tarl):
 def _forget_workspaces_of_the_test() -> Iterator[None]:
     """Forget the workspaces of a test, which are gone after it."""
     yield
-    kept = [root for root in workspace._SEARCHED if root.is_relative_to(REPOSITORY)]
-    hidden = {folder for folder in workspace._KEPT if folder.is_relative_to(REPOSITORY)}
-    if (kept, hidden) != (workspace._SEARCHED, workspace._KEPT):
-        workspace._SEARCHED[:] = kept
-        workspace._KEPT &= hidden
-        workspace.forget()
+    kept = [root for root in node_workspaces._SEARCHED if root.is_relative_to(REPOSITORY)]
+    hidden = {folder for folder in node_workspaces._KEPT if folder.is_relative_to(REPOSITORY)}
+    if (kept, hidden) != (node_workspaces._SEARCHED, node_workspaces._KEPT):
+        node_workspaces._SEARCHED[:] = kept
+        node_workspaces._KEPT &= hidden
+        node_workspaces.forget()
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pytest_tarl import Sensor
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.guards import Reading, condition
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.candidates import holds
 

@@ -13,7 +13,7 @@ import pytest
 from pytest_tarl.ended_episode import EndedEpisode
 from pytest_tarl.errors import RecordingError, SettingsError
 from pytest_tarl.faults.installing import NO_FAULTS, Faults
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
+from pytest_tarl.formulas.marker_arguments import NOTHING_REQUIRED, Requirements
 
 HEARD: Any = SimpleNamespace(silent=False, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=())
 SILENT: Any = SimpleNamespace(silent=True, subscribed={"/odom", "/joy"}, shutdown_errors=(), notes=())

@@ -11,7 +11,7 @@ from pytest_tarl import finished_tests
 from pytest_tarl.accounts import Account
 from pytest_tarl.errors import FixtureError, RecordingError
 from pytest_tarl.finished_tests import FinishedTest, passed, started
-from pytest_tarl.summary import ACCOUNT
+from pytest_tarl.terminal_summary import ACCOUNT
 
 
 class Hooks:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.formulas.declared import Requirements
+from pytest_tarl.formulas.marker_arguments import Requirements
 from pytest_tarl.formulas.said import Said
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.sensors import Sensor

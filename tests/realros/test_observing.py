@@ -24,7 +24,7 @@ LOGGED = """
 import sys
 import time
 from pathlib import Path
-from pytest_tarl.observing.frames import records
+from pytest_tarl.observing.log_format import records
 from pytest_tarl.observing.writer import unpacked
 
 LOG = Path(".tarl/missions.log")

@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.type_definitions import Kind
 
 
 def number(level: Any) -> int:

@@ -10,7 +10,7 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.diagnostic_updater.status import number, wrapper_of
 from pytest_tarl.ros.diagnostic_updater.tasks import DiagnosticTaskVector
 from pytest_tarl.ros.messages import class_of
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.process import current_process
 
 _CHECK_SECONDS = 0.25  # interval (s) at which rospy's updater reads its period from the parameter server

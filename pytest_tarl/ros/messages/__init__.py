@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, cast
 
 from pytest_tarl.errors import UnsupportedApiError
-from pytest_tarl.ros.messages import ros1, ros2, workspace
-from pytest_tarl.ros.messages.definitions import Kind, has_known_types
-from pytest_tarl.ros.messages.installed import installed_class
+from pytest_tarl.ros.messages import node_workspaces, ros1, ros2
+from pytest_tarl.ros.messages.installed_packages import installed_class
 from pytest_tarl.ros.messages.known import Part
+from pytest_tarl.ros.messages.type_definitions import Kind, has_known_types
 
 _BUILDERS: dict[tuple[Kind, Part], Callable[[str, str], type[Any] | None]] = {
     ("ros1", "msg"): ros1.message_class,
@@ -52,18 +52,18 @@ def _search_around(package: str, file: str | None) -> None:
     """Search the repository of `file`, or else its folder, before all others, unless TARL itself knows the package."""
     root = None if not file or has_known_types(package) else _root_around(file)
     if root is not None:
-        workspace.prefer(root)
+        node_workspaces.prefer(root)
 
 
 @cache
 def _root_around(file: str) -> Path | None:
-    return workspace.root_around(Path(file).parent, Path(file).parent)
+    return node_workspaces.root_around(Path(file).parent, Path(file).parent)
 
 
-workspace.on_forget(_root_around.cache_clear)
+node_workspaces.on_forget(_root_around.cache_clear)
 
 
-@workspace.by_order
+@node_workspaces.by_order
 def find_class(kind: Kind, package: str, name: str, part: Part = "msg") -> type[Any] | None:
     """Return the class of a message (`part` msg), service (srv) or action type, or None if it is unknown."""
     builder = _BUILDERS.get((kind, part))

@@ -12,11 +12,11 @@ from struct import Struct
 from struct import error as StructError  # noqa: N812 (a class)
 from typing import Any, ClassVar
 
-from pytest_tarl.ros.messages import ros1_wire, values
-from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service, identity
+from pytest_tarl.ros.messages import field_values, ros1_wire
+from pytest_tarl.ros.messages.field_values import INTEGERS, FieldError
+from pytest_tarl.ros.messages.node_workspaces import by_order
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
-from pytest_tarl.ros.messages.values import INTEGERS, FieldError
-from pytest_tarl.ros.messages.workspace import by_order
+from pytest_tarl.ros.messages.type_definitions import Definition, Field, find_message, find_service, identity
 
 # types without an installed class, built from the definition in a bag or a topic header
 CARRIED: dict[str, type[Message]] = {}
@@ -176,7 +176,12 @@ def _service(package: str, name: str, halves: tuple[Definition, Definition]) -> 
 
 def build(definition: Definition, module: str) -> type[Message]:
     """Build the class of a definition."""
-    scope: dict[str, Any] = {"FieldError": FieldError, "Time": Time, "Duration": Duration, "values": values}
+    scope: dict[str, Any] = {
+        "FieldError": FieldError,
+        "Time": Time,
+        "Duration": Duration,
+        "values": field_values,
+    }
     defaults: dict[str, Callable[[], Any]] = {}
     lines = []
     for position, field in enumerate(definition.fields):
@@ -285,13 +290,13 @@ def _converter(field: Field) -> Callable[[Any, str], Any]:
         return lambda value, name: (
             bytes(value)
             if not size and isinstance(value, bytes)
-            else bytes(values.as_numbers(value, "uint8", size, name))
+            else bytes(field_values.as_numbers(value, "uint8", size, name))
         )
-    if field.base in values.CODES:
+    if field.base in field_values.CODES:
         packed = _packed_converter(field.base, size)
         return _same_doubles(size, packed) if field.base == "float64" and size else packed
     convert = _element_converter(field)
-    return lambda value, name: values.as_list(value, size, name, convert)
+    return lambda value, name: field_values.as_list(value, size, name, convert)
 
 
 def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
@@ -302,7 +307,7 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
         if value is not last or size:
             if value is last and len(value) == size:
                 return value
-            last = tuple(values.as_numbers(value, base, size, name))
+            last = tuple(field_values.as_numbers(value, base, size, name))
         return last
 
     return convert
@@ -334,7 +339,7 @@ def _element_converter(field: Field) -> Callable[[Any, str], Any]:
     if field.base in ("time", "duration"):
         return lambda value, name: _as_time(value, Time if field.base == "time" else Duration, name)
     if field.primitive:
-        return values.scalar_converter(field.base)
+        return field_values.scalar_converter(field.base)
     nested = _nested(field.base)
 
     def convert(value: Any, name: str) -> Any:

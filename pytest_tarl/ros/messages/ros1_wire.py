@@ -9,8 +9,8 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
-from pytest_tarl.ros.messages.definitions import Definition, find_message
 from pytest_tarl.ros.messages.times import Duration, Time
+from pytest_tarl.ros.messages.type_definitions import Definition, find_message
 
 _CODES = {
     "bool": "?", "byte": "b", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i",

@@ -14,7 +14,11 @@ from array import array
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
-from pytest_tarl.ros.messages.definitions import (
+from pytest_tarl.ros.messages.field_values import CODES, FieldError
+from pytest_tarl.ros.messages.node_workspaces import by_order
+from pytest_tarl.ros.messages.ros2_copy import copy_function
+from pytest_tarl.ros.messages.ros2_fields import LITERALS, default, setter
+from pytest_tarl.ros.messages.type_definitions import (
     Constant,
     Definition,
     Field,
@@ -24,10 +28,6 @@ from pytest_tarl.ros.messages.definitions import (
     identity,
     parse,
 )
-from pytest_tarl.ros.messages.ros2_copy import copy_function
-from pytest_tarl.ros.messages.ros2_fields import LITERALS, default, setter
-from pytest_tarl.ros.messages.values import CODES, FieldError
-from pytest_tarl.ros.messages.workspace import by_order
 
 
 class Message:

@@ -6,9 +6,9 @@ import operator
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from pytest_tarl.ros.messages import values
-from pytest_tarl.ros.messages.definitions import Field
-from pytest_tarl.ros.messages.values import CODES
+from pytest_tarl.ros.messages import field_values
+from pytest_tarl.ros.messages.field_values import CODES
+from pytest_tarl.ros.messages.type_definitions import Field
 
 Nested = Callable[[str], type[Any]]
 Scope = dict[str, Any]
@@ -61,7 +61,7 @@ def _copier(field: Field, nested: Nested) -> Callable[[Any], Any]:
         return lambda value: [element(item) for item in value]
     # a field with one value is sent unchanged, except that a float32 is rounded
     if field.shape == "one":
-        return lambda value: values.as_float32(value, field.name)
+        return lambda value: field_values.as_float32(value, field.name)
     if field.base in CODES and field.base != "byte":
         return (
             operator.itemgetter(slice(None)) if field.shape == "sequence" else operator.methodcaller("copy")

@@ -8,8 +8,8 @@ from array import array
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from pytest_tarl.ros.messages.definitions import Field
-from pytest_tarl.ros.messages.values import CODES, INTEGERS
+from pytest_tarl.ros.messages.field_values import CODES, INTEGERS
+from pytest_tarl.ros.messages.type_definitions import Field
 
 Nested = Callable[[str], type]  # returns a nested message class by its type name
 

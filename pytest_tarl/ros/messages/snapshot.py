@@ -10,7 +10,7 @@ from typing import Any
 
 from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages import find_class, unknown_type
-from pytest_tarl.ros.messages.values import FieldError, as_float32
+from pytest_tarl.ros.messages.field_values import FieldError, as_float32
 
 _COPIERS: dict[type, Callable[[Any], Any]] = {}  # copier of each message class; entries never change
 _STAMPS: dict[

@@ -7,7 +7,7 @@ from enum import IntEnum
 from typing import Any
 
 from pytest_tarl.ros import params_files
-from pytest_tarl.ros.literals import parse_value
+from pytest_tarl.ros.command_line_values import parse_value
 from pytest_tarl.ros.messages import find_class
 
 _FIELDS = {

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from pytest_tarl.ros.bus import Topic
 from pytest_tarl.ros.messages import ros2_wire
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.snapshot import type_name
-from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.rclpy.exceptions import InvalidHandle
 from pytest_tarl.ros.rclpy.qos import DurabilityPolicy, QoSProfile
 

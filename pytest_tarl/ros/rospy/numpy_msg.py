@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from pytest_tarl.ros.messages.values import CODES
+from pytest_tarl.ros.messages.field_values import CODES
 
 __all__ = ["numpy_msg"]
 

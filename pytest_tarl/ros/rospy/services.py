@@ -11,8 +11,8 @@ from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.snapshot import snapshot
-from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.rospy.exceptions import (
     ROSException,
     ROSInterruptException,

@@ -10,8 +10,8 @@ from io import BytesIO
 from typing import Any
 
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.snapshot import is_message, type_name
-from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInterruptException, ROSSerializationException
 from pytest_tarl.ros.rospy.node import this_node, warn_if_illegal

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from pytest_tarl.ros.literals import parse_value
+from pytest_tarl.ros.command_line_values import parse_value
 from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.names import absolute, expand
 from pytest_tarl.ros.rospy.node import this_node

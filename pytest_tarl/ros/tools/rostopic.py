@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from pytest_tarl.message_fields import field_value
+from pytest_tarl.field_paths import field_value
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.process import current_process

@@ -11,8 +11,8 @@ import pytest
 
 from pytest_tarl.bags.converting import _value, class_named, converted
 from pytest_tarl.ros.messages import find_class, times
-from pytest_tarl.ros.messages.definitions import Kind
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.field_values import FieldError
+from pytest_tarl.ros.messages.type_definitions import Kind
 
 KINDS: tuple[Kind, ...] = ("ros1", "ros2")
 

@@ -25,9 +25,9 @@ from pytest_tarl.commands import (
 )
 from pytest_tarl.commands import fleet as fleet_commands
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.fleet import document, merged, question, words
 from pytest_tarl.fleet import html as fleet_html
 from pytest_tarl.fleet import ingest as ingesting
+from pytest_tarl.fleet import json_result, merged, question, words
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.observing import command as observing
 
@@ -414,7 +414,7 @@ class Answer:
 def answered(calls: Calls) -> Answer:
     found = Answer()
     calls.replace(question, "answer", found)
-    calls.replace(document, "text", '{"a": "\x1b"}\n')
+    calls.replace(json_result, "text", '{"a": "\x1b"}\n')
     calls.replace(words, "lines", ["line\n"])
     calls.replace(fleet_html, "write")
     return found

@@ -236,7 +236,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Any:
         yield
 
     def use(watched: Watch) -> list[Any]:
-        monkeypatch.setattr(watch.state, "locked", locked)
+        monkeypatch.setattr(watch.watch_state, "locked", locked)
         monkeypatch.setattr(
             watch.watch, "begun", lambda *positional, **named: given.append((positional, named)) or watched
         )

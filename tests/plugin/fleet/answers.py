@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from pytest_tarl.fleet.changed_robots import Robot, Robots
 from pytest_tarl.fleet.clusters import Clusters
-from pytest_tarl.fleet.groups import Group
+from pytest_tarl.fleet.mission_groups import Group
 from pytest_tarl.fleet.question import Answer, Question
 from pytest_tarl.fleet.repairs import Effect
-from pytest_tarl.fleet.robots import Robot, Robots
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.fleet import clusters, components, partitions, residual_maps, robots
+from pytest_tarl.fleet import changed_robots, clusters, components, partitions, residual_maps
 from pytest_tarl.fleet.partitions import Transitions
 from pytest_tarl.fleet.repairs import Strata, effect, strata
 from pytest_tarl.fleet.residual_maps import ResidualMap, since
@@ -251,15 +251,17 @@ def test_data_set_files_are_divided_into_tasks(
 def test_robots_are_divided_by_their_missions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(robots, "PORTION", 10)
+    monkeypatch.setattr(changed_robots, "PORTION", 10)
     ends = ints(4, 10, 11, 35, 40)
-    assert [one.tolist() for one in robots.portions(ends)] == [[4, 10], [11], [35, 40]]
+    assert [one.tolist() for one in changed_robots.portions(ends)] == [[4, 10], [11], [35, 40]]
 
 
 def test_weighted_mean_of_e_values_does_not_overflow() -> None:
-    assert robots._mean(np.array([]), np.array([])) == -1.0
-    assert robots._mean(np.array([3.0, 1.0]), np.array([1.0, 3.0])) == pytest.approx(log2((8 + 3 * 2) / 4))
-    assert robots._mean(np.array([2000.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
+    assert changed_robots._mean(np.array([]), np.array([])) == -1.0
+    assert changed_robots._mean(np.array([3.0, 1.0]), np.array([1.0, 3.0])) == pytest.approx(
+        log2((8 + 3 * 2) / 4)
+    )
+    assert changed_robots._mean(np.array([2000.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
         1999.0
     )  # without overflow
 
@@ -363,12 +365,14 @@ def test_clustering_compares_the_robots_with_the_most_evidence(monkeypatch: pyte
         robot("d", 2.0, 2.0),
         robot("e", 5.0, 1.0),
     ]
-    named = robots.Robots(0.1, tuple(every), tuple(every[:3]), tuple(every[2:]))
+    named = changed_robots.Robots(0.1, tuple(every), tuple(every[:3]), tuple(every[2:]))
     recording: Any = SimpleNamespace(sample=SimpleNamespace(cells=((0,),)))
     nothing: Any = None
     found = clusters.clustered(nothing, nothing, nothing, recording, named, 0.05)
     assert compared == ["b", "c", "e"]
     assert found.left_out == 2
     assert [one.robots for one in found.found] == [("b", "c", "e")]
-    none = clusters.clustered(nothing, nothing, nothing, recording, robots.Robots(0.1, (), (), ()), 0.05)
+    none = clusters.clustered(
+        nothing, nothing, nothing, recording, changed_robots.Robots(0.1, (), (), ()), 0.05
+    )
     assert none == clusters.Clusters()

@@ -10,7 +10,7 @@ pytest.importorskip("pyarrow")
 
 from pytest_tarl.errors import FleetError
 from pytest_tarl.fleet import dataset
-from pytest_tarl.fleet.store import Store
+from pytest_tarl.fleet.data_folder import Store
 
 
 class ClientError(Exception):

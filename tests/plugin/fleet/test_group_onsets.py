@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pytest_tarl.fleet import ingest, robots
+from pytest_tarl.fleet import changed_robots, ingest
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.question import Question, answer
 from tests.plugin.monitoring import missions
@@ -38,6 +38,6 @@ def test_small_change_is_detected_for_a_whole_site(data: str) -> None:
 
 
 def test_group_of_one_has_the_evidence_of_its_robot(data: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(robots, "PORTION", 7)
+    monkeypatch.setattr(changed_robots, "PORTION", 7)
     found = answer(Question(data, by=("robot",), robot="south203"))
     assert found.onsets.every == found.robots.every

@@ -14,8 +14,8 @@ pytest.importorskip("duckdb")
 pytest.importorskip("dask")
 
 from pytest_tarl.errors import FixtureError, SettingsError
-from pytest_tarl.fleet import groups, merged, question, repairs
-from pytest_tarl.fleet.groups import Judged
+from pytest_tarl.fleet import merged, mission_groups, question, repairs
+from pytest_tarl.fleet.mission_groups import Judged
 from pytest_tarl.fleet.question import Question
 from pytest_tarl.fleet.schema import Origin
 from pytest_tarl.learning.bounds import Range, mean_of, rate
@@ -37,18 +37,20 @@ def database(passed: list[int], total: list[float], names: Any = ()) -> Any:
 def test_a_group_has_the_figures_of_its_missions(
     declared: Range | None, outside: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(groups, "_declared", lambda _: declared)
+    monkeypatch.setattr(mission_groups, "_declared", lambda _: declared)
     totals = [1.0, 2.0, 3.0, 4.0]
-    one = groups._group(database([1, 0, 1, 1], totals), replace(fixture(), stated=None), 0, ("a", 7, 4, 2))
+    one = mission_groups._group(
+        database([1, 0, 1, 1], totals), replace(fixture(), stated=None), 0, ("a", 7, 4, 2)
+    )
     assert (one.values, one.missions, one.robots, one.passed) == (("a", "7"), 4, 2, 3)
     assert (one.reward, one.outside, one.compared, one.verdict) == (2.5, outside, 0, None)
-    assert one.success == rate(3, 4, groups.CONFIDENCE)
-    assert one.mean == mean_of(totals, groups.CONFIDENCE, None if outside else declared)
+    assert one.success == rate(3, 4, mission_groups.CONFIDENCE)
+    assert one.mean == mean_of(totals, mission_groups.CONFIDENCE, None if outside else declared)
 
 
 def test_the_formulas_of_each_group_are_collected() -> None:
     rows = [(0, "a", 3, 1, -0.5), (0, "b", 3, 0, 0.5), (2, "a", 1, 1, -1.0)]
-    assert groups._violations(database([], [], rows)) == {
+    assert mission_groups._violations(database([], [], rows)) == {
         0: (Judged("a", 3, 1, -0.5), Judged("b", 3, 0, 0.5)),
         2: (Judged("a", 1, 1, -1.0),),
     }
@@ -85,14 +87,14 @@ def test_each_group_gets_its_own_verdict_and_formulas(monkeypatch: pytest.Monkey
     worse = Verdict("degraded", 0.001, 0.001, 1.5, 0.2, 0.1)
     found = SimpleNamespace(verdict=worse, region=Region(((2, 0),)))
     judged = (Judged("a", 3, 1, -0.5),)
-    monkeypatch.setattr(groups.samples, "groups", lambda *_: ["sample"] * 3)
-    monkeypatch.setattr(groups, "_tasks", lambda *_: ())
-    monkeypatch.setattr(groups, "_violations", lambda _: {2: judged})
-    monkeypatch.setattr(groups, "_group", lambda _db, _fixture, number, _row: group(f"g{number}"))
+    monkeypatch.setattr(mission_groups.samples, "groups", lambda *_: ["sample"] * 3)
+    monkeypatch.setattr(mission_groups, "_tasks", lambda *_: ())
+    monkeypatch.setattr(mission_groups, "_violations", lambda _: {2: judged})
+    monkeypatch.setattr(mission_groups, "_group", lambda _db, _fixture, number, _row: group(f"g{number}"))
     engine: Any = SimpleNamespace(each=lambda *_: [(3, None), (40, found), (5, None)])
     rows = [("a", 1, 1), ("b", 1, 1), ("c", 1, 1)]
     where: Any = None
-    every = groups.judged(
+    every = mission_groups.judged(
         database([], [], rows), where, fixture(), (), ["site"], engine, alpha=0.05, tolerance=None
     )
     assert [(one.values, one.compared, one.formulas) for one in every] == [

@@ -12,9 +12,9 @@ import pytest
 
 from pytest_tarl.commands.cli import main
 from pytest_tarl.fleet import html, ingest
+from pytest_tarl.fleet.changed_robots import Robot
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.question import Answer, Question, answer
-from pytest_tarl.fleet.robots import Robot
 from tests.plugin.monitoring import missions
 from tests.plugin.report.test_browser import DARK, Seen, browser, opened
 

@@ -18,11 +18,11 @@ import pytest
 from hypothesis import given, settings
 
 from pytest_tarl.commands.cli import main
-from pytest_tarl.fleet import document
 from pytest_tarl.fleet import ingest as ingesting
+from pytest_tarl.fleet import json_result
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.ingest import Order, ingest
 from pytest_tarl.fleet.question import Question, answer
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.learning.fixture import save
 from pytest_tarl.learning.tables import Judgements
@@ -330,7 +330,7 @@ def test_formulas_of_each_mission_are_stored_and_reported(
     assert main(["fleet", str(data)]) == 0
     said = f"{FORMULA}: violated by 1 of 3 missions in unknown unknown, least robustness -0.2"
     assert said in capsys.readouterr().out
-    jsonschema.validate(document.document(answer(Question(str(data)))), document.schema())
+    jsonschema.validate(json_result.document(answer(Question(str(data)))), json_result.schema())
     silent = missions.log(tmp_path / "r1" / "missions.log", missions.walks(2, 4))
     assert main([*argv[:1], str(silent), *argv[2:]]) == 0
     assert "2 missions of r1, 2 not judged by every formula" in capsys.readouterr().out

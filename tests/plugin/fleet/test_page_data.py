@@ -15,10 +15,10 @@ from pytest_tarl.fleet import html
 from pytest_tarl.fleet.clusters import Cluster, Clusters
 from pytest_tarl.fleet.components import Component
 from pytest_tarl.fleet.decomposition import Decomposition
-from pytest_tarl.fleet.groups import Judged
+from pytest_tarl.fleet.mission_groups import Judged
 from pytest_tarl.fleet.question import Answer, Mission, Question
 from pytest_tarl.fleet.residual_maps import ResidualMap
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 from tests.plugin.fleet.answers import (
     CELLS,
     DAY,

@@ -23,12 +23,21 @@ import pytest
 
 from pytest_tarl.commands.cli import main
 from pytest_tarl.errors import FixtureError, FleetError, SettingsError
-from pytest_tarl.fleet import dataset, document, engine, groups, ingest, robots, samples, scores
+from pytest_tarl.fleet import (
+    changed_robots,
+    dask_tasks,
+    dataset,
+    ingest,
+    json_result,
+    mission_groups,
+    samples,
+    scores,
+)
+from pytest_tarl.fleet.data_folder import Store, store
 from pytest_tarl.fleet.database import Filter, opened
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.logged_samples import logged_samples
 from pytest_tarl.fleet.question import Answer, Question, answer
-from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.learning.merging import merge
@@ -41,7 +50,7 @@ from tests.plugin.monitoring import missions
 DAY = 86_400.0
 DRIFTED = "r3"  # from its 41st mission on
 ROBOTS = 4
-COMPARED = groups._compared
+COMPARED = mission_groups._compared
 EACH = 80
 
 
@@ -120,9 +129,9 @@ def test_tarl_fleet_and_tarl_watch_compute_the_same_evidence(
         pass
     one.close()
     latest = log_evidence(one.monitor.processes)
-    world, bound = robots.evidence(one.monitor, one.monitor.processes.peak, latest)
+    world, bound = changed_robots.evidence(one.monitor, one.monitor.processes.peak, latest)
     counts, named = one.monitor.counts, max(world, bound) >= -log2(found.robots.q)
-    assert found.robots.every[robot] == robots.Robot(
+    assert found.robots.every[robot] == changed_robots.Robot(
         f"r{robot}", counts.missions, counts.passed, world, bound, status(one.monitor) if named else None
     )
 
@@ -158,7 +167,7 @@ def test_answer_is_independent_of_order_and_threads(
     if seed:  # the same rows again, in files of another name
         for path in sorted((tmp_path / "data").rglob("*.parquet")):
             path.with_name(f"copy{path.name}").write_bytes(path.read_bytes())
-    monkeypatch.setattr(robots, "PORTION", random.choice([1, 100]))
+    monkeypatch.setattr(changed_robots, "PORTION", random.choice([1, 100]))
     monkeypatch.setattr(scores, "PORTION", random.choice([1, 100]))
     monkeypatch.setattr(samples, "PORTION", random.choice([1, 100, 100_000]))
     connect = duckdb.connect
@@ -168,7 +177,7 @@ def test_answer_is_independent_of_order_and_threads(
     )
     again = answer(Question(str(tmp_path / "data"), workers=(2, 7)[seed]))
     assert again.copies == (ROBOTS * EACH if seed else 0)
-    assert document.text(replace(again, copies=0)) == document.text(found)
+    assert json_result.text(replace(again, copies=0)) == json_result.text(found)
 
 
 def test_old_and_new_schemas_are_read_together(folder: Path, found: Answer, tmp_path: Path) -> None:
@@ -187,13 +196,13 @@ def test_old_and_new_schemas_are_read_together(folder: Path, found: Answer, tmp_
 def test_object_store_and_folder_give_the_same_answer(folder: Path, found: Answer) -> None:
     add(folder, [*range(ROBOTS)], "memory://fleet/one")
     again = answer(Question("memory://fleet/one"))
-    assert document.text(again) == document.text(found)
+    assert json_result.text(again) == json_result.text(found)
 
 
 def test_sample_of_a_large_group_does_not_depend_on_files(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(groups, "MOST", 60)
+    monkeypatch.setattr(mission_groups, "MOST", 60)
     found = answer(Question(str(folder / "data"), by=()))
     assert [(one.missions, one.compared, one.robots) for one in found.groups] == [(ROBOTS * EACH, 60, ROBOTS)]
     by_month = answer(Question(str(folder / "data"), by=("month",)))
@@ -202,7 +211,7 @@ def test_sample_of_a_large_group_does_not_depend_on_files(
 
 def test_the_flags_since_and_robot_select_missions(folder: Path) -> None:
     found = answer(Question(str(folder / "data"), since=date(2024, 10, 14), robot="r1"))
-    jsonschema.validate(document.document(found), document.schema())
+    jsonschema.validate(json_result.document(found), json_result.schema())
     assert found.missions == EACH - 40
     assert [one.name for one in found.robots.every] == ["r1"]
     totals = [one.total for one in found.lowest]
@@ -240,8 +249,8 @@ def test_report_has_the_documented_exit_status(
     assert "1 of 4 robots: missions fall below a recorded bound (false discovery rate at most 5 %" in out
     assert "r3: " in out
     told = json.loads(result.read_text())
-    jsonschema.Draft202012Validator.check_schema(document.schema())
-    jsonschema.validate(told, document.schema())
+    jsonschema.Draft202012Validator.check_schema(json_result.schema())
+    jsonschema.validate(told, json_result.schema())
     assert told["below"] == [DRIFTED]
     assert abs(told["robots"][3]["bound_since"]["mission"] - 41) <= 3
     assert main(["fleet", data, "--robot", "r0", "--fail-if", "robot", "--fail-if", "drifted"]) == 0
@@ -347,14 +356,14 @@ def scheduler() -> Iterator[Any]:
 def test_cluster_gives_the_same_bits_after_a_worker_dies(
     folder: Path, found: Answer, scheduler: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(robots, "PORTION", 100)
+    monkeypatch.setattr(changed_robots, "PORTION", 100)
     question = Question(str(folder / "data"), cluster=scheduler.scheduler_address)
     with pytest.raises(SettingsError, match="has no workers; start some: dask worker tcp://"):
         answer(question)
     scheduler.scale(3)
     scheduler.sync(scheduler._correct_state)
-    monkeypatch.setattr(groups, "_compared", partial(dying, str(tmp_path / "died")))
-    assert document.text(answer(question)) == document.text(found)
+    monkeypatch.setattr(mission_groups, "_compared", partial(dying, str(tmp_path / "died")))
+    assert json_result.text(answer(question)) == json_result.text(found)
     assert (tmp_path / "died").exists()
 
 
@@ -374,7 +383,7 @@ def test_an_unreachable_cluster_is_reported_in_one_sentence(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr(engine, "REACHED", 0.2)
+    monkeypatch.setattr(dask_tasks, "REACHED", 0.2)
     assert main(["fleet", str(folder / "data"), "--cluster", "tcp://127.0.0.1:9"]) == 2
     err = capsys.readouterr().err
     assert "--cluster: no Dask scheduler answers at tcp://127.0.0.1:9" in err
@@ -385,10 +394,10 @@ def test_an_unreachable_cluster_is_reported_in_one_sentence(
 def test_answer_does_not_depend_on_workers(
     folder: Path, found: Answer, monkeypatch: pytest.MonkeyPatch, workers: int
 ) -> None:
-    for module in (robots, scores, samples):
+    for module in (changed_robots, scores, samples):
         monkeypatch.setattr(module, "PORTION", 20)
     again = answer(Question(str(folder / "data"), workers=workers))
-    assert document.text(again) == document.text(found)
+    assert json_result.text(again) == json_result.text(found)
 
 
 def test_concurrently_added_missions_are_counted_once(folder: Path, found: Answer, tmp_path: Path) -> None:
@@ -409,4 +418,4 @@ def test_concurrently_added_missions_are_counted_once(folder: Path, found: Answe
         add(folder, [0], to)
     again = answer(Question(str(to)))
     assert 0 < again.copies < 30
-    assert document.text(replace(again, copies=0)) == document.text(found)
+    assert json_result.text(replace(again, copies=0)) == json_result.text(found)

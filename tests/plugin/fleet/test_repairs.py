@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl.commands.cli import main
-from pytest_tarl.fleet import document
+from pytest_tarl.fleet import json_result
 from pytest_tarl.fleet.repairs import Effect, effect, strata
 from pytest_tarl.patching.patch import TITLE, unified_diff, write
 from tests.plugin.monitoring import missions
@@ -108,7 +108,7 @@ def test_tarl_fleet_prints_which_repair_helps_which_group(
     result = tmp_path / "fleet.json"
     assert main(["fleet", data, "--by", "site", "--json", str(result)]) == 0
     out = capsys.readouterr().out
-    jsonschema.validate(told := json.loads(result.read_text()), document.schema())
+    jsonschema.validate(told := json.loads(result.read_text()), json_result.schema())
     assert [one["verdict"] for one in told["repairs"]] == ["no effect shown", "helps"]
     assert [one["of"] for one in told["components"]["rows"]][3] == "repair"
     assert f"{guard.stem} at dry: no effect shown" in out

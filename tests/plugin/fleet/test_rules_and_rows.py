@@ -11,8 +11,8 @@ import pytest
 pytest.importorskip("pyarrow")
 
 from pytest_tarl.fleet import partitions
+from pytest_tarl.fleet.mission_rows import Row, _cells, _statements
 from pytest_tarl.fleet.question import Answer
-from pytest_tarl.fleet.rows import Row, _cells, _statements
 from pytest_tarl.learning.tables import END, START, Chain, Edges, ListSample, Sample, Visits
 
 NOTHING: Any = SimpleNamespace(drifted=(), below=())

@@ -11,7 +11,7 @@ import pytest
 
 from pytest_tarl.commands.cli import main
 from pytest_tarl.errors import FleetError
-from pytest_tarl.fleet import document
+from pytest_tarl.fleet import json_result
 from pytest_tarl.fleet.ingest import Order, ingest
 from pytest_tarl.fleet.question import Question, answer
 from tests.plugin.fleet import faulty_s3
@@ -60,13 +60,13 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> tuple[Order, str]:
     test, logs = world(folder)
     order = Order(tuple(logs), str(folder / "local"), test, "{folder}", "1.2", "north")
     list(ingest(order))
-    return replace(order, to=DATA), document.text(answer(Question(order.to)))
+    return replace(order, to=DATA), json_result.text(answer(Question(order.to)))
 
 
 def said(copies: bool = False) -> str:
     found = answer(Question(DATA))
     assert copies or not found.copies
-    return document.text(replace(found, copies=0))
+    return json_result.text(replace(found, copies=0))
 
 
 def test_object_store_equals_a_folder(s3: Faults, fleet: tuple[Order, str]) -> None:

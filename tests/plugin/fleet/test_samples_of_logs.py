@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("pyarrow")
 
 from pytest_tarl.fleet.logged_samples import identity, plan_of, requirements_of
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED
+from pytest_tarl.formulas.marker_arguments import NOTHING_REQUIRED
 from pytest_tarl.logged import Mission
 
 

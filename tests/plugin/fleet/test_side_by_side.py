@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from pytest_tarl.fleet import robots, side_by_side
+from pytest_tarl.fleet import changed_robots, side_by_side
 from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.fixture import Fixture
@@ -79,7 +79,7 @@ def test_each_robot_has_the_state_of_its_own_monitor(
                 found[robot] = (*some.state(place), some.peaks()[place])
         assert sorted(found) == [*range(len(counts))]
         for robot, end in enumerate(ends.tolist()):
-            alone = robots.fresh(first)
+            alone = changed_robots.fresh(first)
             low = end - counts[robot]
             rows = (sample.chain.episode >= low) & (sample.chain.episode < end)
             columns = {name: column[rows] for name, column in vars(sample.chain).items()}

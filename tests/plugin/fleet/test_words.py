@@ -8,11 +8,11 @@ from math import inf, nan
 
 import pytest
 
-from pytest_tarl.fleet import decomposition_words, repair_words, words
+from pytest_tarl.fleet import decomposition_words, repair_effect_words, words
 from pytest_tarl.fleet.clusters import Cluster, Clusters
 from pytest_tarl.fleet.components import Component
 from pytest_tarl.fleet.decomposition import Decomposition
-from pytest_tarl.fleet.groups import Judged
+from pytest_tarl.fleet.mission_groups import Judged
 from pytest_tarl.fleet.question import Mission, Question
 from pytest_tarl.model import Bound
 from tests.plugin.fleet.answers import (
@@ -203,7 +203,7 @@ def test_repair_effect_is_printed_with_intervals() -> None:
         effect(values=("wet",)),
         replace(effect("guard-2", -0.5, -0.75), reward_bound=bound(-0.75, -0.25)),
     )
-    assert [*repair_words.lines(some, {"guard-1": "mud"})] == [
+    assert [*repair_effect_words.lines(some, {"guard-1": "mud"})] == [
         (
             "Repairs, against missions without a repair at the same site in the same week (simultaneous "
             "intervals at 95 %)"
@@ -222,7 +222,7 @@ def test_repair_effect_is_printed_with_intervals() -> None:
 
 def test_a_repair_without_an_interval_says_why() -> None:
     few = effect(reward_bound=bound(-inf, inf), success_bound=bound(-inf, inf))
-    lines = [*repair_words.lines((unknown(), few), {})]
+    lines = [*repair_effect_words.lines((unknown(), few), {})]
     assert lines[1:] == [
         "  guard-1: not comparable (no missions without a repair at the same site in the same week)",
         (
@@ -237,7 +237,7 @@ def test_a_repair_without_an_interval_says_why() -> None:
     ("found", "expected"), [(bound(0.01, 0.09), "+1 to +9"), (Bound(-inf, inf, 0.95, "t", False, 0), "")]
 )
 def test_confidence_interval_has_the_unit_of_its_score(found: Bound, expected: str) -> None:
-    assert repair_words.interval(found, 100) == expected
+    assert repair_effect_words.interval(found, 100) == expected
 
 
 def component(name: str, variance: float, **changes: float) -> Component:

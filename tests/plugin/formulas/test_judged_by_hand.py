@@ -9,9 +9,9 @@ import pytest
 pytest.importorskip("rtamt")
 
 from pytest_tarl.errors import LogError
-from pytest_tarl.formulas.declared import Requirements
 from pytest_tarl.formulas.judging import Judge, Judged
 from pytest_tarl.formulas.lookback import Followed, LookedBack, judgeable, left_out, looked_back
+from pytest_tarl.formulas.marker_arguments import Requirements
 from pytest_tarl.formulas.parsing import formula
 
 NAMES = ("x", "y")

@@ -24,7 +24,7 @@ from pytest_tarl.instrumentation.launching import importable, on_search_path, re
 from pytest_tarl.instrumentation.magnitude import LIMIT
 from pytest_tarl.instrumentation.nodecode import NodeCode, _offsets
 from pytest_tarl.instrumentation.separate_modules import SeparateModules
-from pytest_tarl.instrumentation.threads import ThreadWatch
+from pytest_tarl.instrumentation.thread_starts import ThreadWatch
 
 # data files
 

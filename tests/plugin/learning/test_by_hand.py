@@ -18,14 +18,14 @@ from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.learning.binning import learned_edges, quantiles
 from pytest_tarl.learning.binomial import BinomialTail, log_choose, probabilities
 from pytest_tarl.learning.drift import Difference, corrected, judged, paper_region, tolerated
-from pytest_tarl.learning.evidence import Evidence, slabs
 from pytest_tarl.learning.guarantees import stated, varies
 from pytest_tarl.learning.judgements import judgements, rows, stacked, together, with_worlds, world
 from pytest_tarl.learning.localize import culprits, prior
 from pytest_tarl.learning.marginal import apart, groups, left_out, lent, projected
 from pytest_tarl.learning.merging import merge
-from pytest_tarl.learning.parts import lost, means
+from pytest_tarl.learning.residual_sums import Evidence, slabs
 from pytest_tarl.learning.residuals import beyond
+from pytest_tarl.learning.reward_parts import lost, means
 from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.sequential import Look, certain, concluded, planned
 from pytest_tarl.learning.shifts import shifts

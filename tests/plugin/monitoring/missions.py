@@ -14,7 +14,7 @@ from pytest_tarl.learning.fixture import Fixture, load, save
 from pytest_tarl.learning.guarantees import stated
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample
-from pytest_tarl.observing.frames import LogFile, encoded
+from pytest_tarl.observing.log_format import LogFile, encoded
 from pytest_tarl.observing.writer import packed
 from pytest_tarl.seeds import episode_seed
 from pytest_tarl.sensors import Cell, Sensor, binning_digest

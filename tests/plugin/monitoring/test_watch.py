@@ -18,7 +18,7 @@ from jsonschema import validate
 from pytest_tarl.commands.cli import main
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.monitoring import dashboard, monitor, watch
-from pytest_tarl.monitoring.reading import LogReader
+from pytest_tarl.monitoring.log_reader import LogReader
 from tests.plugin.monitoring.missions import Walk, content, fixture, log, walks
 
 

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.monitoring import (
     assembling,
+    bet_updates,
     conformal,
     dashboard,
     e_process,
-    judging,
     moments,
     restarts,
     stated,
@@ -30,7 +30,7 @@ from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, begun, shares
 from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.status import Evidence, Moment, Score, Status
-from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.report.sensor_regions import Vocabulary
 from tests.plugin.monitoring import missions
 
 NOON = datetime(2026, 3, 1, 12, 30).timestamp()
@@ -241,8 +241,8 @@ def test_alpha_is_divided_among_bounds_missions_and_cells(
 
 
 def test_bounds_of_a_robot_have_fixed_array_columns() -> None:
-    assert judging.columns(2, 3, 4, 1).tolist() == [1, 5, 8 + 3, 8 + 4, 8 + 5]
-    found = judging.begun(np.array([1.0, 2.0, 3.0]), 1, 2)
+    assert bet_updates.columns(2, 3, 4, 1).tolist() == [1, 5, 8 + 3, 8 + 4, 8 + 5]
+    found = bet_updates.begun(np.array([1.0, 2.0, 3.0]), 1, 2)
     assert found.threshold.tolist() == [1.0, 1.0, 2.0, 3.0, 2.0, 3.0]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from pytest_tarl import Sensor
 from pytest_tarl.observing import observer as observing
-from pytest_tarl.observing.frames import records
+from pytest_tarl.observing.log_format import records
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import unpacked
 

@@ -14,7 +14,7 @@ from pytest_tarl import Sensor, Signal
 from pytest_tarl.errors import LogError
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.observing import command, outlet
-from pytest_tarl.observing.frames import Record, records
+from pytest_tarl.observing.log_format import Record, records
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.ros.rclpy.executors import ExternalShutdownException
 from pytest_tarl.ros.rospy.exceptions import ROSInterruptException

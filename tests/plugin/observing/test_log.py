@@ -13,7 +13,7 @@ from random import Random
 import pytest
 
 from pytest_tarl.errors import LogError
-from pytest_tarl.observing.frames import MAGIC, LogFile, encoded, framed, records
+from pytest_tarl.observing.log_format import MAGIC, LogFile, encoded, framed, records
 
 RECORDS = [{"kind": "steps", "number": number, "text": "ä" * number} for number in range(5)]
 
@@ -82,7 +82,7 @@ def test_two_observers_cannot_share_a_log(tmp_path: Path) -> None:
 WRITER = """
 import sys
 from pathlib import Path
-from pytest_tarl.observing.frames import LogFile
+from pytest_tarl.observing.log_format import LogFile
 log = LogFile(Path(sys.argv[1]))
 for number in range(1_000_000):
     log.append({"number": number, "text": "x" * (number % 3000)})

@@ -19,7 +19,7 @@ import pytest
 from pytest_tarl import Sensor
 from pytest_tarl.errors import LogError
 from pytest_tarl.observing import outlet, stream
-from pytest_tarl.observing.frames import MAGIC, LogFile, records, set_aside
+from pytest_tarl.observing.log_format import MAGIC, LogFile, records, set_aside
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import Rotation, Writer, unpacked
 

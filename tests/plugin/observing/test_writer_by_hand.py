@@ -20,7 +20,7 @@ import pytest
 from pytest_tarl.errors import LogError
 from pytest_tarl.observing import ring, writer_main
 from pytest_tarl.observing import writer as writing
-from pytest_tarl.observing.frames import MAGIC, LogFile, encoded, records, set_aside
+from pytest_tarl.observing.log_format import MAGIC, LogFile, encoded, records, set_aside
 from pytest_tarl.observing.ring import Ring, shared_memory
 from pytest_tarl.observing.writer import Rotation, Writer, packed, unpacked
 from pytest_tarl.observing.writer_main import LENGTH, PERIOD

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.instrumentation.datafiles import reading
-from pytest_tarl.patching.definitions import Place, configured, defined, package_files, parameter
+from pytest_tarl.patching.constant_definitions import Place, configured, defined, package_files, parameter
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.patching.named_numbers import named_numbers
 from pytest_tarl.patching.rewriting import rewrite

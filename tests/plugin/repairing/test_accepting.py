@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.definitions import ParameterInFile, Place
+from pytest_tarl.patching.constant_definitions import ParameterInFile, Place
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import SHIPPED, template

@@ -12,7 +12,7 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Edit, Guard, Repair
-from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.constant_definitions import Place
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing import delivering
 from pytest_tarl.repairing.delivering import (

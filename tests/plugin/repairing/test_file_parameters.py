@@ -11,7 +11,7 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.definitions import ParameterInFile, configured, parameter
+from pytest_tarl.patching.constant_definitions import ParameterInFile, configured, parameter
 from pytest_tarl.patching.mutate import located, mutations
 from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.repairing.file_parameters import files_of_packages, places_in_force

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.constant_definitions import Place
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.searching.accept import Outcome

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from pytest_tarl.commands.cli import main
-from pytest_tarl.patching.reading import read
+from pytest_tarl.patching.patch_reader import read
 from pytest_tarl.repairing.merge_patches import joined
 from tests.plugin.commands.test_applying import AGAIN, NODE, git, guarded, repair, robot
 from tests.plugin.tank import ONLINE, RECORD

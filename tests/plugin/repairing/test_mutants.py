@@ -12,7 +12,7 @@ import pytest
 
 from pytest_tarl.errors import NodeError, RepairError, StaleTextError
 from pytest_tarl.formulas.judging import Judged
-from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.constant_definitions import Place
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing import mutants as module
 from pytest_tarl.repairing.mutants import MOST_KEPT, ORIGINAL, Mutants

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.reading import read
+from pytest_tarl.patching.patch_reader import read
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
 TARL = (sys.executable, "-m", "pytest_tarl")

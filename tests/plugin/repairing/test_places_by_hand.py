@@ -11,7 +11,7 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.definitions import defined
+from pytest_tarl.patching.constant_definitions import defined
 from pytest_tarl.patching.mutate import Mutation, redefinition
 from pytest_tarl.patching.rewriting import rewrite
 from pytest_tarl.repairing.placing import MOST_NAMED, Placing

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages import node_workspaces
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 from tests.slow import slow
 
@@ -341,7 +341,7 @@ def launched(worn: pytest.Pytester, gain: str) -> tuple[str, str, str]:
     (worn.path / "keeper.py").write_text(DECLARED.format(declaration=ONE.replace("2.0", "0.7")))
     (worn.path / "keeper.launch.py").write_text(LAUNCHED.format(gain=gain))
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.launch("keeper.launch.py")')
-    workspace.forget()
+    node_workspaces.forget()
     return repaired(worn)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.patching.definitions import defined
+from pytest_tarl.patching.constant_definitions import defined
 from pytest_tarl.repairing.table_entries import entry_uses
 from pytest_tarl.searching.plainness import Oddness, writing
 from tarl_lint.api import Analysis, analyse

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.model import Comparison, Region
-from pytest_tarl.report import html, regions, words
+from pytest_tarl.report import html, sensor_regions, words
 from pytest_tarl.sensors import Sensor
 from tests.plugin.report.conftest import LIGHT, TERRAIN, X
 
@@ -108,20 +108,22 @@ def test_paths_and_test_ids_break_at_their_parts() -> None:
         ([((1, 3),)], [((1, 3),)]),
     ],
 )
-def test_boxes_of_an_angle_meet_at_its_ends(cover: list[regions.Box], joined: list[regions.Box]) -> None:
-    assert list(regions.closed(cover, 0, 4)) == joined
+def test_boxes_of_an_angle_meet_at_its_ends(
+    cover: list[sensor_regions.Box], joined: list[sensor_regions.Box]
+) -> None:
+    assert list(sensor_regions.closed(cover, 0, 4)) == joined
 
 
 def test_boxes_are_joined_over_unvisited_cells_only() -> None:
     low, high = ((1, 2), (5, 6)), ((4, 4), (3, 5))
-    assert regions.bridged([low, high], []) == (((1, 4), (3, 6)),)
-    assert regions.bridged([high, low], [(1, 2), (5, 4)]) == (((1, 4), (3, 6)),)
+    assert sensor_regions.bridged([low, high], []) == (((1, 4), (3, 6)),)
+    assert sensor_regions.bridged([high, low], [(1, 2), (5, 4)]) == (((1, 4), (3, 6)),)
     for corner in ((1, 3), (4, 6), (3, 4)):
-        assert regions.bridged([low, high], [corner]) == (low, high)
+        assert sensor_regions.bridged([low, high], [corner]) == (low, high)
 
 
 def test_ranges_are_joined_if_they_touch_or_overlap() -> None:
-    assert regions.runs([(5, 5), (1, 2), (3, 3), (7, 9), (8, 8)]) == [(1, 3), (5, 5), (7, 9)]
+    assert sensor_regions.runs([(5, 5), (1, 2), (3, 3), (7, 9), (8, 8)]) == [(1, 3), (5, 5), (7, 9)]
 
 
 def test_wide_line_is_cut_but_never_below_sixteen_characters() -> None:

@@ -14,7 +14,7 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.item_episode import Instruments
 from pytest_tarl.resuming.journal import Journal
-from pytest_tarl.resuming.rollout import KeptRollout, episode_key, scope_of
+from pytest_tarl.resuming.kept_rollout import KeptRollout, episode_key, scope_of
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.sensors import Sensor
 

@@ -15,7 +15,7 @@ from pytest_tarl.item_episode import NOTHING
 from pytest_tarl.options import Options
 from pytest_tarl.resuming import run as run_module
 from pytest_tarl.resuming.journal import Journal
-from pytest_tarl.resuming.rollout import KeptRollout
+from pytest_tarl.resuming.kept_rollout import KeptRollout
 from pytest_tarl.resuming.run import ResumableRun, ResumableTest
 from pytest_tarl.sensors import Sensor
 

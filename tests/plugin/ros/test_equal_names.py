@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 
 from pytest_tarl.ros import Ros
-from pytest_tarl.ros.messages import find_class, ros1, ros2, workspace
-from pytest_tarl.ros.messages.definitions import Kind, type_names
+from pytest_tarl.ros.messages import find_class, node_workspaces, ros1, ros2
+from pytest_tarl.ros.messages.field_values import FieldError
 from pytest_tarl.ros.messages.known import Part
-from pytest_tarl.ros.messages.packages import could_be_package
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.package_modules import could_be_package
+from pytest_tarl.ros.messages.type_definitions import Kind, type_names
 from pytest_tarl.ros.packages import get_package_share_directory
 from pytest_tarl.ros.siblings import generated
 from pytest_tarl.ros.uninstalled import candidates
@@ -53,14 +53,14 @@ def files(field: str) -> dict[str, str]:
 @pytest.fixture
 def two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Path, Path]]:
     """Create two repositories, of which none has been searched."""
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
-    monkeypatch.setattr(workspace, "_KEPT", set())
-    workspace.forget()
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_KEPT", set())
+    node_workspaces.forget()
     places = tmp_path / "one", tmp_path / "other"
     for place, field in zip(places, ("water", "oil"), strict=True):
         write(place, files(field))
     yield places
-    workspace.forget()
+    node_workspaces.forget()
 
 
 def fields(kind: Any) -> list[str]:
@@ -102,7 +102,7 @@ def test_each_test_gets_the_messages_of_its_own_workspace(two: tuple[Path, Path]
 def test_a_class_depends_on_all_messages_inside(kind: Kind, two: tuple[Path, Path]) -> None:
     seen: dict[Path, list[Any]] = {}
     for place in (*two, *two):
-        workspace.search(place)
+        node_workspaces.search(place)
         outer, same = (find_class(kind, "robot", name) for name in ("Outer", "Same"))
         assert outer is not None
         inner = find_class(kind, "robot", "Level")
@@ -134,10 +134,10 @@ def test_messages_are_unpickled_by_the_workspace_in_use(two: tuple[Path, Path]) 
 
     packed = {}
     for place in two:
-        workspace.search(place)
+        node_workspaces.search(place)
         packed[place] = pickle.dumps(messages())
     for place in two:
-        workspace.search(place)
+        node_workspaces.search(place)
         again = pickle.loads(packed[place])
         assert again == messages()
         assert [type(one) for one in again] == [type(one) for one in messages()]
@@ -145,7 +145,7 @@ def test_messages_are_unpickled_by_the_workspace_in_use(two: tuple[Path, Path]) 
 
 
 def test_unknown_action_part_has_no_class(two: tuple[Path, Path]) -> None:
-    workspace.search(two[0])
+    node_workspaces.search(two[0])
     for module, name in (
         ("robot.srv", "Fill_Goal"),
         ("robot.action", "Drain_Other"),
@@ -159,14 +159,14 @@ def test_unknown_action_part_has_no_class(two: tuple[Path, Path]) -> None:
 def test_names_come_from_the_current_workspace(part: Part, two: tuple[Path, Path]) -> None:
     only = {"water": "OnlyWater", "oil": "OnlyOil"}
     for place, field in (*zip(two, only, strict=True), (two[0], "water")):
-        workspace.search(place)
+        node_workspaces.search(place)
         assert could_be_package("robot")
         assert get_package_share_directory("robot") == str(place / "robot")
         assert generated("robot.cfg.DriveConfig").defaults[field] == 0.5
         assert (only[field] in type_names("ros2", "robot", part)) is (part == "msg")
         assert len([name for name in only.values() if name in type_names("ros2", "robot", "msg")]) == 1
         assert candidates("helper")[0].is_relative_to(place)
-        assert f"float64 {field}" in "".join(workspace.workspace_types(part).values())
+        assert f"float64 {field}" in "".join(node_workspaces.workspace_types(part).values())
 
 
 def test_workspaces_are_read_again_only_for_a_new_one(
@@ -178,16 +178,16 @@ def test_workspaces_are_read_again_only_for_a_new_one(
         read.append(root)
         return original(root, kept)
 
-    monkeypatch.setattr(workspace, "read", noted)
+    monkeypatch.setattr(node_workspaces, "read", noted)
     one, other = two
     for place in (one, other):
-        workspace.search(place)
-    workspace.workspaces()
+        node_workspaces.search(place)
+    node_workspaces.workspaces()
     assert sorted(read) == [one, other]
     for place in (one, other, one):
-        workspace.search(place)
-        assert workspace.workspaces()[0].root == place
-        assert len(workspace.workspaces()) == 2
+        node_workspaces.search(place)
+        assert node_workspaces.workspaces()[0].root == place
+        assert len(node_workspaces.workspaces()) == 2
     assert sorted(read) == [one, other]
 
 
@@ -195,18 +195,20 @@ def test_a_repository_inside_another_comes_first_for_its_nodes(two: tuple[Path, 
     one, _ = two
     inner = one / "vendor" / "arm"
     write(inner, files("air"))
-    workspace.search(one)
-    assert workspace.workspace_types("msg")["robot/Level"] == "float64 water"
-    workspace.search(inner)
-    assert workspace.workspace_types("msg")["robot/Level"] == "float64 air"
-    found = [workspace.workspace_around(place) for place in (inner / "node.py", one / "node.py", one.parent)]
+    node_workspaces.search(one)
+    assert node_workspaces.workspace_types("msg")["robot/Level"] == "float64 water"
+    node_workspaces.search(inner)
+    assert node_workspaces.workspace_types("msg")["robot/Level"] == "float64 air"
+    found = [
+        node_workspaces.workspace_around(place) for place in (inner / "node.py", one / "node.py", one.parent)
+    ]
     assert [None if each is None else each.root for each in found] == [inner, one, None]
-    workspace.search(one)
-    found = [workspace.workspace_around(place) for place in (inner / "node.py", one / "node.py")]
+    node_workspaces.search(one)
+    found = [node_workspaces.workspace_around(place) for place in (inner / "node.py", one / "node.py")]
     assert [None if each is None else each.root for each in found] == [inner, one]
 
 
 def test_known_packages_do_not_search_the_repository(two: tuple[Path, Path]) -> None:
     write(two[0], {"test_it.py": "from pytest_tarl.ros import message_type\nmessage_type('std_msgs/String')"})
     runpy.run_path(str(two[0] / "test_it.py"))
-    assert workspace._SEARCHED == []
+    assert node_workspaces._SEARCHED == []

@@ -13,8 +13,8 @@ import pytest
 
 from pytest_tarl import faults
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.faults.fields import altered, store
 from pytest_tarl.faults.installing import Faults
+from pytest_tarl.faults.message_numbers import altered, store
 from pytest_tarl.faults.topic import moment, sizes, up_to
 from pytest_tarl.ros import message_type
 from pytest_tarl.spaces import Choice, Span

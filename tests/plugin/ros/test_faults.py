@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from pytest_tarl import faults
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.faults.fields import altered
 from pytest_tarl.faults.installing import Faults
+from pytest_tarl.faults.message_numbers import altered
 from pytest_tarl.ros import Ros, message_type
 from pytest_tarl.seeds import generator
 from pytest_tarl.spaces import Choice, Fault

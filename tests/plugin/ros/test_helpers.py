@@ -12,7 +12,7 @@ import pytest
 from pytest_tarl.errors import NodeError, UnsupportedApiError
 from pytest_tarl.ros import Ros, message_type
 from pytest_tarl.ros.cv_bridge import CvBridge, CvBridgeError
-from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages import node_workspaces
 from tests.plugin.ros.conftest import Start, heard
 
 
@@ -177,7 +177,7 @@ def test_types_and_folders_of_workspace_packages_are_found(
         (package / part / f"{name}.{part}").write_text(text)
     (package / "package.xml").write_text("<package><name>rover_msgs</name></package>")
     (tmp_path / ".git").mkdir()
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
     Ros().use_definitions_around(package, tmp_path)
     ros = start("""
         import rclpy
@@ -195,7 +195,7 @@ def test_types_and_folders_of_workspace_packages_are_found(
     assert ros.namespace["made"] == (0.5, 1.0, 2, 0)
     assert ros.namespace["folder"] == str(package)
     assert "package 'nowhere' not found" in ros.namespace["said"]
-    workspace.forget()
+    node_workspaces.forget()
 
 
 def test_a_subscribe_listener_is_called_for_new_subscribers(start: Start) -> None:

@@ -11,7 +11,7 @@ import pytest
 from pytest_tarl.ros import cv_bridge_boost, message_type, packages
 from pytest_tarl.ros.messages import find_class, snapshot
 from pytest_tarl.ros.messages.known import known_types
-from pytest_tarl.ros.messages.workspace import search
+from pytest_tarl.ros.messages.node_workspaces import search
 from tests.plugin.ros.conftest import Start, heard
 
 

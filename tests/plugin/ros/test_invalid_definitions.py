@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pytest_tarl.errors import UnsupportedApiError
-from pytest_tarl.ros.messages.definitions import parse
+from pytest_tarl.ros.messages.type_definitions import parse
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.ros import message_type
 from pytest_tarl.ros.launch_plan import launch_path
 from pytest_tarl.ros.launched import texts_replaced
-from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages import node_workspaces
 from tests.lint.test_system import MANIFEST
 from tests.plugin.ros.test_workspaces import write
 
@@ -141,14 +141,14 @@ FILES = {
 @pytest.fixture
 def tarl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Tarl]:
     """Open an episode in a workspace of four packages; forget the workspace at the end."""
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
     write(tmp_path, {name: text.lstrip("\n") for name, text in FILES.items()})
-    workspace.forget()
+    node_workspaces.forget()
     recorder = Recorder()
     sensors = [Sensor("x", low=0, high=1, bins=2)]
     with closing(Tarl(1, sensors, tmp_path, recorder, NodeImports(tmp_path, {}, recorder.hook))) as episode:
         yield episode
-    workspace.forget()
+    node_workspaces.forget()
     assert "utils" not in sys.modules
     assert "relays.late" not in sys.modules
 
@@ -199,7 +199,7 @@ def test_test_tags_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) 
     checked = '<remap from="out" to="/checked"/>'
     test = f'<test pkg="one" type="relay.py" test-name="check">{checked}</test>'
     write(tmp_path, {"one/test/relay.test": f"<launch>{node}{test}</launch>"})
-    workspace.forget()
+    node_workspaces.forget()
     tarl.launch("one/relay.test")
     assert sent(tarl, "/in", 1.0) is None
     assert tarl.bus.latest("/out").data == 1.0
@@ -209,7 +209,7 @@ def test_test_tags_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) 
 
 def test_hidden_node_runs_with_a_note(tarl: Tarl, tmp_path: Path) -> None:
     write(tmp_path, {"other/CATKIN_IGNORE": ""})
-    workspace.forget()
+    node_workspaces.forget()
     tarl.launch("one/launch/robot.launch", only=["first", "second"])
     assert sent(tarl, "/r1/start", 1.0) == 3.0 * 10.0 * (0.5 * 10.0 * 2.0)
     (note,) = tarl.ros.notes
@@ -327,7 +327,7 @@ def test_unknown_import_is_reported_in_one_sentence(tarl: Tarl, tmp_path: Path) 
 def test_launch_file_beside_the_test_is_found_by_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
     launch = '<launch><node pkg="bot" exec="relay"/></launch>'
     write(
         tmp_path,

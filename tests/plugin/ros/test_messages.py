@@ -16,11 +16,11 @@ from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.extras import install_command
 from pytest_tarl.ros import message_type
 from pytest_tarl.ros.messages import find_class, snapshot
-from pytest_tarl.ros.messages.definitions import contained_packages, find_message, parse, type_names
-from pytest_tarl.ros.messages.installed import installed_kind
+from pytest_tarl.ros.messages.field_values import FieldError
+from pytest_tarl.ros.messages.installed_packages import installed_kind
 from pytest_tarl.ros.messages.known import Part
 from pytest_tarl.ros.messages.snapshot import field_names, translate
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.type_definitions import contained_packages, find_message, parse, type_names
 from tests.plugin.ros.conftest import Start
 
 PACKAGES = ("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "visualization_msgs", "diagnostic_msgs")

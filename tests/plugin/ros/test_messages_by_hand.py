@@ -9,11 +9,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.ros.messages import ros1_wire, ros2_wire
-from pytest_tarl.ros.messages.definitions import Constant, Definition, Field, _sections, parse
-from pytest_tarl.ros.messages.ros1 import build, field_class, md5_text
-from pytest_tarl.ros.messages.ros1_wire import WireError
-from pytest_tarl.ros.messages.times import Duration, Time
-from pytest_tarl.ros.messages.values import (
+from pytest_tarl.ros.messages.field_values import (
     FieldError,
     as_bool,
     as_float,
@@ -23,6 +19,10 @@ from pytest_tarl.ros.messages.values import (
     as_numbers,
     as_text,
 )
+from pytest_tarl.ros.messages.ros1 import build, field_class, md5_text
+from pytest_tarl.ros.messages.ros1_wire import WireError
+from pytest_tarl.ros.messages.times import Duration, Time
+from pytest_tarl.ros.messages.type_definitions import Constant, Definition, Field, _sections, parse
 
 SECOND = 10**9
 

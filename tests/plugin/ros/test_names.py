@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.ros.literals import parse_value
+from pytest_tarl.ros.command_line_values import parse_value
 from pytest_tarl.ros.names import absolute, parse_ros1, parse_ros2, resolve
 
 

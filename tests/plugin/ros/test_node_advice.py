@@ -12,7 +12,7 @@ from pytest_tarl.errors import MOST_TEXT, NodeError
 from pytest_tarl.ros import Ros
 from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import given
-from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages import node_workspaces
 from tests.plugin.ros.conftest import Start
 
 CASES = {
@@ -209,8 +209,8 @@ def test_node_may_continue_without_a_module(start: Start) -> None:
 def test_advice_names_a_folder_with_the_package_name(
     inner: str, start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
-    workspace.forget()
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
+    node_workspaces.forget()
     package = tmp_path / "boat_base"
     package.mkdir()
     (package / inner).touch() if inner.endswith(".py") else (package / inner).mkdir()
@@ -220,7 +220,7 @@ def test_advice_names_a_folder_with_the_package_name(
         start("import rospy\nfrom boat_base.srv import Shoot\n")
     for name in [name for name in sys.modules if name.partition(".")[0] == "boat_base"]:
         del sys.modules[name]
-    workspace.forget()
+    node_workspaces.forget()
 
 
 def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path) -> None:
@@ -231,8 +231,8 @@ def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path
         (tmp_path / package / "package.xml").write_text(f"<package><name>{name}</name></package>")
     marker = tmp_path / "tools" / "CATKIN_IGNORE"
     marker.touch()
-    workspace.search(tmp_path / "seen")
-    workspace.forget()
+    node_workspaces.search(tmp_path / "seen")
+    node_workspaces.forget()
     with pytest.raises(
         NodeError, match=r"unseen is in the workspace, but .*CATKIN_IGNORE hides it from the build"
     ):
@@ -264,8 +264,8 @@ def test_a_parameter_without_a_value_is_not_set(
         '<rosparam subst_value="true">\ntarget: $(arg target)\nrate: 5\n</rosparam></node></launch>'
     )
     (tmp_path / "node.py").write_text("")
-    workspace.search(tmp_path)
-    workspace.forget()
+    node_workspaces.search(tmp_path)
+    node_workspaces.forget()
     found = given(tmp_path / "node.py")
     assert (found.private, found.valueless) == ({"rate": 5}, ("target",))
     ros = Ros()
@@ -284,8 +284,8 @@ def in_package(folder: Path, **files: str) -> Given:
     for name, text in files.items():
         (folder / f"{name}.launch").write_text(f"<launch>{text}</launch>")
     (folder / "node.py").write_text("")
-    workspace.search(folder)
-    workspace.forget()
+    node_workspaces.search(folder)
+    node_workspaces.forget()
     return given(folder / "node.py")
 
 

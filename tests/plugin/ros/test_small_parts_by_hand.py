@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from pytest_tarl.errors import NodeError
 from pytest_tarl.ros import message_type, tf2_geometry_msgs, topic_tools
-from pytest_tarl.ros.accounts import account, of_node
+from pytest_tarl.ros.exception_texts import account, of_node
 from pytest_tarl.ros.kdl.vectors import Vector
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from tests.plugin.ros.conftest import Start

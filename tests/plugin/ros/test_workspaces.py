@@ -14,8 +14,8 @@ from pytest_tarl.errors import NodeError, SettingsError, UnsupportedApiError
 from pytest_tarl.ros import Ros, launched, siblings, uninstalled
 from pytest_tarl.ros.launch_sources import NOTHING, Given
 from pytest_tarl.ros.launched import given
-from pytest_tarl.ros.messages import workspace
-from pytest_tarl.ros.messages.workspace import package_folders
+from pytest_tarl.ros.messages import node_workspaces
+from pytest_tarl.ros.messages.node_workspaces import package_folders
 from pytest_tarl.ros.packages import ResourceNotFound, RosPack
 from tests.plugin.ros.conftest import Start
 
@@ -40,7 +40,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
 @pytest.fixture
 def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """Create a workspace of two packages that contains the node of the fixture `start`; forget it at the end."""
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
     write(
         tmp_path,
         {
@@ -64,13 +64,13 @@ def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
             "b/twice.py": "",
         },
     )
-    workspace.search(tmp_path)
-    workspace.forget()
+    node_workspaces.search(tmp_path)
+    node_workspaces.forget()
     before = set(sys.modules)
     yield tmp_path
     for name in sys.modules.keys() - before:  # removed after each episode by the plugin's import hook
         del sys.modules[name]
-    workspace.forget()
+    node_workspaces.forget()
 
 
 def test_workspace_packages_are_importable_as_if_installed(packages: Path, start: Start) -> None:
@@ -89,7 +89,7 @@ def test_workspace_packages_are_importable_as_if_installed(packages: Path, start
 def test_test_can_use_message_types_of_its_repository(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
     write(
         tmp_path,
         {
@@ -103,35 +103,35 @@ def test_test_can_use_message_types_of_its_repository(
     )
     found = runpy.run_path(str(tmp_path / "robot" / "tests" / "test_tank.py"))
     assert found["Level"](water=2.0).water == 2.0
-    workspace.forget()
+    node_workspaces.forget()
 
 
 @pytest.mark.parametrize("test", [".", "tests"])
 def test_nearby_definitions_need_no_repository(
     test: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
-    workspace.forget()
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
+    node_workspaces.forget()
     write(
         tmp_path,
         {"boat/srv/Shoot.srv": "bool now\n---", "boat/nodes/boat.py": "", f"{test}/test_boat.py": ""},
     )
     ros = Ros()
     ros.use_definitions_around(tmp_path / "boat" / "nodes", tmp_path / test)
-    assert workspace.workspace_types("srv") == {"boat/Shoot": "bool now\n---"}
+    assert node_workspaces.workspace_types("srv") == {"boat/Shoot": "bool now\n---"}
     ros.use_definitions_around(tmp_path.parent.parent, tmp_path / test)  # a node elsewhere
-    assert [tmp_path] == workspace._SEARCHED
+    assert [tmp_path] == node_workspaces._SEARCHED
     ros.close()
-    workspace.forget()
+    node_workspaces.forget()
 
 
 def test_a_folder_without_definitions_is_not_searched(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    monkeypatch.setattr(node_workspaces, "_SEARCHED", [])
     write(tmp_path, {"boat/srv/README.md": "", "boat/nodes/boat.py": ""})
-    workspace.search(tmp_path / "boat" / "nodes", tmp_path)
-    assert workspace._SEARCHED == []
+    node_workspaces.search(tmp_path / "boat" / "nodes", tmp_path)
+    assert node_workspaces._SEARCHED == []
 
 
 def test_configurations_are_generated_with_their_defaults(packages: Path, start: Start) -> None:
@@ -160,12 +160,12 @@ def test_the_error_names_a_configuration_without_a_file(packages: Path, start: S
 def test_node_in_an_ignored_package_imports_its_messages(
     packages: Path, start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(workspace, "_KEPT", set())
+    monkeypatch.setattr(node_workspaces, "_KEPT", set())
     write(packages, {"arm_base/CATKIN_IGNORE": "", "arm_tools/COLCON_IGNORE": ""})
-    workspace.forget()
-    assert not workspace.packages()
-    workspace.search(packages / "arm_base/src")
-    assert set(workspace.packages()) == {"arm_base"}
+    node_workspaces.forget()
+    assert not node_workspaces.packages()
+    node_workspaces.search(packages / "arm_base/src")
+    assert set(node_workspaces.packages()) == {"arm_base"}
     assert start("import rospy\nfrom arm_base.msg import Reading\n").namespace["Reading"](1.0).value == 1.0
 
 
@@ -237,7 +237,7 @@ def launches(packages: Path) -> Path:
         },
     )
     (packages / "arm_base/package.xml").unlink()
-    workspace.forget()
+    node_workspaces.forget()
     return packages
 
 
@@ -261,7 +261,7 @@ def test_launch_parameters_yield_to_the_test(launches: Path, start: Start) -> No
 def test_parameters_of_ros2_come_from_launch_files_in_python(launches: Path, start: Start) -> None:
     write(launches, {"launch/one.launch.py": LAUNCH2})
     (launches / "launch/one.launch").unlink()
-    workspace.forget()
+    node_workspaces.forget()
     found = given(launches / "node.py")
     assert found.note == "parameters of drive come from one.launch.py (ros2.yaml)."
     assert started(start, launches, NODE2, found)["found"] == {"kp": 2.5, "limits.top": 4}
@@ -276,7 +276,7 @@ def test_a_node_gets_the_parameters_of_its_enclosing_namespaces(launches: Path) 
         </launch>
         """
     write(launches, {"launch/one.launch": text})
-    workspace.forget()
+    node_workspaces.forget()
     assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
 
 
@@ -293,7 +293,7 @@ def test_group_parameters_belong_to_their_node(launches: Path, start: Start) -> 
         </launch>
         """
     write(launches, {"launch/one.launch": text})
-    workspace.forget()
+    node_workspaces.forget()
     found = given(launches / "node.py")
     assert (found.shared, found.valueless) == ({"/other_name_2/rate": 6}, ("mode",))
     namespace = started(start, launches, NODE1, found)
@@ -305,7 +305,7 @@ def test_conflicting_launch_files_set_only_equal_parameters(
 ) -> None:
     other = LAUNCH1.format(rate=9).replace('name="rate"', 'name="limits/low" value="1.0"/><param name="rate"')
     write(launches, {"launch/two.launch": other})
-    workspace.forget()
+    node_workspaces.forget()
     found = given(launches / "node.py")
     assert found.private == {"kp": 1.5, "limits": {"top": 3, "low": 1}}
     assert found.shared == {"/robot/mass": 12.5}
@@ -314,7 +314,7 @@ def test_conflicting_launch_files_set_only_equal_parameters(
     )
     write(launches, {"launch/two.launch": LAUNCH1.format(rate=9).replace("arm.yaml", "low.yaml"),
                      "config/low.yaml": "kp: true\nlimits: {top: 3.0, low: 1}\n"})  # fmt: skip
-    workspace.forget()
+    node_workspaces.forget()
     assert given(launches / "node.py").private == {"limits": {"low": 1}}
     assert given(launches / "node.py", launches / "launch/two.launch").private["rate"] == 9
     assert given(launches / "smoothing.py") == NOTHING
@@ -364,7 +364,7 @@ def test_ros2_arguments_come_from_the_launch_file(launches: Path, pytester: pyte
         """
     text = LAUNCH2.replace('name="drive",', f'name="drive", {arguments}')
     write(launches, {"launch/one.launch.py": text, "node.py": node, "test_it.py": test})
-    workspace.forget()
+    node_workspaces.forget()
     found = given(launches / "node.py")
     assert (found.argv, found.private["kp"]) == (("--arm", "left"), 2.5)
     assert found.note == "parameters and arguments of drive come from one.launch.py (ros2.yaml)."
@@ -385,7 +385,7 @@ def test_a_python_project_is_importable_as_if_installed(packages: Path, start: S
             "old/drv.py": "raise SystemExit",
         },
     )
-    workspace.forget()
+    node_workspaces.forget()
     ros = start("""
         import rospy
         import drv
@@ -404,13 +404,13 @@ def test_every_cache_of_workspace_facts_is_emptied(packages: Path, start: Start)
     package_folders()
     caches = [
         (module, name, value)
-        for module in (workspace, launched, siblings, uninstalled)
+        for module in (node_workspaces, launched, siblings, uninstalled)
         for name, value in vars(module).items()
         if hasattr(value, "cache_info") and value.__module__ == module.__name__
     ]
     filled = [name for _, name, value in caches if value.cache_info().currsize]
     assert {"workspaces", "packages", "given", "_of_package", "_modules"} <= set(filled)
-    workspace.forget()
+    node_workspaces.forget()
     assert [name for _, name, value in caches if value.cache_info().currsize] == []
 
 

@@ -12,9 +12,9 @@ from typing import BinaryIO
 
 from pytest_tarl.framed import HEAD
 from pytest_tarl.monitoring.assembling import Assembly, Expected
-from pytest_tarl.monitoring.blocks import end_of, next_block
+from pytest_tarl.monitoring.log_blocks import end_of, next_block
 from pytest_tarl.monitoring.mission import Mission, Progress, mark
-from pytest_tarl.observing.frames import MAGIC, next_record
+from pytest_tarl.observing.log_format import MAGIC, next_record
 
 
 @dataclass

@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pytest_tarl.fleet import side_by_side
+from pytest_tarl.fleet.dask_tasks import Engine
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.engine import Engine
 from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import e_bh, e_process, restarts

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pytest_tarl.fleet import samples
+from pytest_tarl.fleet.dask_tasks import Engine
+from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.engine import Engine
-from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.bounds import Range, mean_of, rate
 from pytest_tarl.learning.drift import Difference, compare, corrected
 from pytest_tarl.learning.fixture import Fixture

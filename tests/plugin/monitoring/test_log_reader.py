@@ -15,12 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytest_tarl.monitoring import blocks
-from pytest_tarl.monitoring import reading as reading_module
+from pytest_tarl.monitoring import log_blocks
+from pytest_tarl.monitoring import log_reader as reading_module
 from pytest_tarl.monitoring.assembling import Expected
+from pytest_tarl.monitoring.log_reader import LogReader
 from pytest_tarl.monitoring.mission import Mission, Progress, columns
-from pytest_tarl.monitoring.reading import LogReader
-from pytest_tarl.observing.frames import MAGIC, Record, encoded
+from pytest_tarl.observing.log_format import MAGIC, Record, encoded
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.sensors import binning_digest
 from tests.plugin.monitoring.missions import SENSORS, TEST, content, log, records, start, walks
@@ -79,7 +79,7 @@ class Reading:
 def blocks_of(size: int) -> Iterator[None]:
     """Read logs in blocks of `size` bytes."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reading_module, "next_block", partial(blocks.next_block, size=size))
+        patch.setattr(reading_module, "next_block", partial(log_blocks.next_block, size=size))
         yield
 
 
@@ -87,7 +87,7 @@ def sums(some: list) -> list[float]:  # type: ignore[type-arg]
     return [float(np.sum(one.reward)) for one in some]
 
 
-SIZES = st.sampled_from([1, 7, 100, 400, 1000, 5000, blocks.BLOCK])
+SIZES = st.sampled_from([1, 7, 100, 400, 1000, 5000, log_blocks.BLOCK])
 
 
 @settings(max_examples=200 if SLOW else 40)
@@ -180,10 +180,10 @@ def test_the_result_does_not_depend_on_block_boundaries(
 def test_short_missions_are_taken_without_decoding_their_records(tmp_path: Path, at_start: bool) -> None:
     path = log(tmp_path / "m.log", walks(5, 3))
     with path.open("rb") as file:
-        block = blocks.next_block(file, len(MAGIC))
+        block = log_blocks.next_block(file, len(MAGIC))
         assert block.record()["kind"] == "start"
         if at_start:  # at the start of a block
-            block = blocks.next_block(file, blocks.end_of(block.spot()))
+            block = log_blocks.next_block(file, log_blocks.end_of(block.spot()))
         assert [one[4] for one in block.at_once()] == [
             b"true" if one.passed else b"false" for one in walks(5, 3)
         ]
@@ -200,13 +200,13 @@ def test_hand_made_records_equal_written_records(tmp_path: Path) -> None:
     observer.end(passed=walk.passed)
     observer.close()
     with (tmp_path / "m.log").open("rb") as file:
-        block = blocks.next_block(file, len(MAGIC))
+        block = log_blocks.next_block(file, len(MAGIC))
     kept, made = list(records_of(block)), records(walk)
     assert [[*one] for one in kept[1:]] == [[*one] for one in made]
     assert all(kept[2][name] == made[1][name] for name in ("cells", "step_cell", "reward", "site"))
 
 
-def records_of(block: blocks.Block) -> Iterator[Record]:
+def records_of(block: log_blocks.Block) -> Iterator[Record]:
     while block.left():
         yield block.record()
 

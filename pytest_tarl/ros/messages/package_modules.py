@@ -9,9 +9,9 @@ from typing import Any
 
 from pytest_tarl.errors import UnsupportedNameError
 from pytest_tarl.ros.messages import find_class, ros1, unknown_type
-from pytest_tarl.ros.messages.definitions import Kind, contained_packages, type_names
 from pytest_tarl.ros.messages.known import Part
-from pytest_tarl.ros.messages.workspace import workspace_packages
+from pytest_tarl.ros.messages.node_workspaces import workspace_packages
+from pytest_tarl.ros.messages.type_definitions import Kind, contained_packages, type_names
 from pytest_tarl.ros.missing import as_read_by
 
 _ENDINGS = ("_msgs", "_srvs", "_interfaces")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl import Signal, faults
-from pytest_tarl.message_fields import dotted, field_value
+from pytest_tarl.field_paths import dotted, field_value
 
 
 def test_fields_are_followed_through_attributes_items_and_indices() -> None:

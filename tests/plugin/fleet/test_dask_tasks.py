@@ -17,7 +17,7 @@ import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from pytest_tarl.errors import FleetError
-from pytest_tarl.fleet import engine
+from pytest_tarl.fleet import dask_tasks
 
 
 def linear_algebra_threads() -> set[int]:
@@ -30,7 +30,7 @@ def linear_algebra_threads() -> set[int]:
 def test_linear_algebra_uses_one_thread(workers: int) -> None:
     with threadpool_limits(2, user_api="blas"):
         before = linear_algebra_threads()
-        with engine.local(workers) as some:
+        with dask_tasks.local(workers) as some:
             assert linear_algebra_threads() == {1}
             assert list(some.each(linear_algebra_threads, [()] * 10)) == [{1}] * 10
         assert linear_algebra_threads() == before
@@ -39,7 +39,7 @@ def test_linear_algebra_uses_one_thread(workers: int) -> None:
 def test_a_cluster_task_uses_one_thread_for_linear_algebra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
     with ProcessPoolExecutor(1, get_context("spawn")) as worker:
-        assert list(engine.Cluster(worker, 1).each(linear_algebra_threads, [()])) == [{1}]
+        assert list(dask_tasks.Cluster(worker, 1).each(linear_algebra_threads, [()])) == [{1}]
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
@@ -53,18 +53,18 @@ def test_limited_tasks_run_at_a_time_in_order(workers: int) -> None:
         ran.append(number)
         return number**2
 
-    with engine.local(workers) as some:
+    with dask_tasks.local(workers) as some:
         assert list(some.each(squared, tasks())) == [number**2 for number in range(100)]
         ran.clear()
         results = some.each(squared, tasks())
         next(results)
         results.close()  # type: ignore[attr-defined]
-    assert 1 <= len(ran) <= engine.WINDOW * workers
+    assert 1 <= len(ran) <= dask_tasks.WINDOW * workers
 
 
 @pytest.mark.parametrize(("workers", "threaded"), [(1, False), (2, True), (7, True)])
 def test_single_worker_is_the_process_itself(workers: int, threaded: bool) -> None:
-    with engine.local(workers) as some:
+    with dask_tasks.local(workers) as some:
         names = set(some.each(lambda: threading.current_thread().name, [()] * 20))
     assert some.workers == workers
     if threaded:
@@ -92,13 +92,15 @@ def test_two_tasks_per_thread_wait_on_a_cluster(
 ) -> None:
     executor: Any = Executor()
     limits: list[int] = []
-    monkeypatch.setattr(engine, "threadpool_limits", lambda limit, user_api: limits.append(limit))
-    results = engine.Cluster(executor, 3).each(lambda a, b: a - b, ((n, 1) for n in range(20)))
+    monkeypatch.setattr(dask_tasks, "threadpool_limits", lambda limit, user_api: limits.append(limit))
+    results = dask_tasks.Cluster(executor, 3).each(lambda a, b: a - b, ((n, 1) for n in range(20)))
     assert [next(results), next(results)] == [-1, 0]
-    assert (len(executor.submitted), limits) == (engine.AHEAD * 3 + 1, [1, 1])
+    assert (len(executor.submitted), limits) == (dask_tasks.AHEAD * 3 + 1, [1, 1])
     results.close()  # type: ignore[attr-defined]
-    assert [one.cancelled() for one in executor.submitted] == [False] * 2 + [True] * (engine.AHEAD * 3 - 1)
-    every = engine.Cluster(Executor(), 3).each(lambda a, b: a - b, ((n, 1) for n in range(20)))  # type: ignore[arg-type]
+    assert [one.cancelled() for one in executor.submitted] == [False] * 2 + [True] * (
+        dask_tasks.AHEAD * 3 - 1
+    )
+    every = dask_tasks.Cluster(Executor(), 3).each(lambda a, b: a - b, ((n, 1) for n in range(20)))  # type: ignore[arg-type]
     assert list(every) == list(range(-1, 19))
 
 
@@ -110,16 +112,16 @@ def test_cluster_errors_differ_from_task_errors() -> None:
 
     lost = type("KilledWorker", (Exception,), {"__module__": "distributed.scheduler"})("worker died")
     with pytest.raises(FleetError, match=r"could not run a task \(worker died\)"):
-        engine._result(failing(lost))
+        dask_tasks._result(failing(lost))
     with pytest.raises(ValueError, match="own"):
-        engine._result(failing(ValueError("own")))
+        dask_tasks._result(failing(ValueError("own")))
     cancelled = Future[None]()
     cancelled.cancel()
     with pytest.raises(FleetError, match="cancelled a task"):
-        engine._result(cancelled)
+        dask_tasks._result(cancelled)
 
 
 def test_argument_equal_to_a_graph_key_is_unchanged() -> None:
     odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
-    with engine.local(1) as some:
+    with dask_tasks.local(1) as some:
         assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd

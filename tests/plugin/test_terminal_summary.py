@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.accounts import Account
-from pytest_tarl.summary import Summary, attach
+from pytest_tarl.terminal_summary import Summary, attach
 
 
 def report(*lines: str, **given: Any) -> Any:

@@ -8,7 +8,7 @@ from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Any
 
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.type_definitions import Kind
 
 _asked: list[Kind] = []  # ROS generations of the look-ups in progress, the innermost look-up last
 

@@ -7,7 +7,7 @@ from copy import deepcopy
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.message_fields import field_value
+from pytest_tarl.field_paths import field_value
 
 
 def altered(message: Any, field: str, change: Callable[[float], float]) -> Any:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from pytest_tarl.patching.document import Document, Edit, parse_expression
-from pytest_tarl.patching.expressions import choice, fitted
+from pytest_tarl.patching.expression_texts import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
 LONGEST_COPY = 3  # a statement of at most this number of lines may be written twice, under `if` and `else`

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, Edit, called, document, parse, strings
-from pytest_tarl.patching.expressions import number
+from pytest_tarl.patching.expression_texts import number
 from pytest_tarl.patching.launch_numbers import computed, key_of, numerals
 from tarl_lint.model import Operand, Span
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import BinaryIO
 
 from pytest_tarl.framed import HEAD, unpack_head
-from pytest_tarl.observing.frames import LARGEST, Record
+from pytest_tarl.observing.log_format import LARGEST, Record
 
 BLOCK = 1 << 15  # number of bytes read at once: about 200 records
 _DECODED = json.JSONDecoder().raw_decode

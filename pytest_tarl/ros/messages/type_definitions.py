@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.extras import install_command
 from pytest_tarl.ros.messages.known import Part, known_types
-from pytest_tarl.ros.messages.workspace import by_order, workspace_types
+from pytest_tarl.ros.messages.node_workspaces import by_order, workspace_types
 from tarl_lint.workspace.interface_syntax import constant
 
 Kind = Literal["ros1", "ros2"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from pytest_tarl.errors import RequirementError, SettingsError, TarlError
-from pytest_tarl.formulas.declared import Requirements, check_texts
 from pytest_tarl.formulas.judging import Judge, Judged
+from pytest_tarl.formulas.marker_arguments import Requirements, check_texts
 from pytest_tarl.sensors import Sensor
 
 

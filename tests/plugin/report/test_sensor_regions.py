@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.report.regions import Vocabulary, boxes, bridged, closed
+from pytest_tarl.report.sensor_regions import Vocabulary, boxes, bridged, closed
 from pytest_tarl.sensors import Sensor
 
 X = Sensor("x", low=0, high=10, bins=10, unit="m")

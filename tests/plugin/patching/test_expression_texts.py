@@ -7,7 +7,7 @@ import ast
 import pytest
 
 from pytest_tarl.patching.document import Document, document, parse_expression
-from pytest_tarl.patching.expressions import (
+from pytest_tarl.patching.expression_texts import (
     choice,
     counting,
     enclosed,

@@ -7,11 +7,11 @@ from dataclasses import asdict
 from importlib import resources
 from typing import Any
 
+from pytest_tarl.fleet.changed_robots import Robot, lower
 from pytest_tarl.fleet.decomposition import Decomposition
-from pytest_tarl.fleet.groups import Group
+from pytest_tarl.fleet.mission_groups import Group
 from pytest_tarl.fleet.question import Answer
 from pytest_tarl.fleet.repairs import Effect
-from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
 from pytest_tarl.report.json_result import finite

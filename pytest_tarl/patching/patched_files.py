@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pytest_tarl.errors import RefusedError, RepairError
-from pytest_tarl.patching.reading import Patch, in_closed_folder
+from pytest_tarl.patching.patch_reader import Patch, in_closed_folder
 
 
 def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:

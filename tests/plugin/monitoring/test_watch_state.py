@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.errors import MonitorError, TarlError
-from pytest_tarl.monitoring import state, watch
+from pytest_tarl.monitoring import watch, watch_state
 from pytest_tarl.monitoring.watch import Watch
 from tests.plugin.monitoring.missions import fixture, log, walks
 from tests.slow import SLOW
@@ -132,12 +132,12 @@ def test_a_damaged_state_is_reported_in_one_sentence(world: Path, data: st.DataO
 
 def test_two_watches_cannot_share_a_state(tmp_path: Path) -> None:
     with (
-        state.locked(tmp_path / "s.npz"),
+        watch_state.locked(tmp_path / "s.npz"),
         pytest.raises(MonitorError, match="in use by another watch"),
-        state.locked(tmp_path / "s.npz"),
+        watch_state.locked(tmp_path / "s.npz"),
     ):
         pass
-    with state.locked(tmp_path / "s.npz"):
+    with watch_state.locked(tmp_path / "s.npz"):
         pass
 
 

@@ -12,7 +12,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching import reading, suggesting
+from pytest_tarl.patching import patch_reader, suggesting
 from pytest_tarl.patching.patch import (
     BASE,
     QUOTE,
@@ -31,14 +31,14 @@ LINES = st.lists(st.sampled_from(["a = 1", "b = 2", "-- c", "++ d", "@@ e", "\\ 
 TEXTS = st.tuples(LINES, st.sampled_from(["", "\n"])).map(lambda made: "\n".join(made[0]) + made[1])
 
 
-def patch(root: Path, before: str, after: str) -> reading.Patch:
+def patch(root: Path, before: str, after: str) -> patch_reader.Patch:
     """Write the patch of a repair of node.py and read it."""
     (root / "node.py").write_bytes(before.encode())
     file = root / "node.py"
     header = [f"{TITLE}0.1.0: 5 → 12 at node.py:9", "test: test_it.py::test_*", "drift: mud", "reward: 3 → 5"]
     header += [f"fixture: {'0' * 64} .tarl/utility/it.npz"]
     diff = unified_diff({file: before.encode()}, {file: after}, root, header)
-    return reading.read(write(diff, root / ".tarl" / "patches", "test_it.py::test_it", "mud"))
+    return patch_reader.read(write(diff, root / ".tarl" / "patches", "test_it.py::test_it", "mud"))
 
 
 @given(TEXTS, TEXTS)
@@ -69,13 +69,13 @@ def test_files_that_are_not_patches_are_refused(tmp_path: Path, content: bytes) 
     path = tmp_path / "x.patch"
     path.write_bytes(content)
     with pytest.raises(RepairError, match="is not a patch of TARL"):
-        reading.read(path)
+        patch_reader.read(path)
 
 
 NODE = "import a\n\nx = 1\ny = 2\nz = 3\n"
 
 
-def result(found: reading.Patch) -> dict[str, Any]:
+def result(found: patch_reader.Patch) -> dict[str, Any]:
     """Return the only result of the patch as SARIF."""
     (run,) = json.loads(suggesting.sarif(found))["runs"]
     (one,) = run["results"]
@@ -154,7 +154,7 @@ def rewritten(root: Path, *changes: tuple[str, str]) -> Path:
 
 
 def test_a_patch_with_a_newly_computed_seal_is_read(tmp_path: Path) -> None:
-    found = reading.read(rewritten(tmp_path))
+    found = patch_reader.read(rewritten(tmp_path))
     assert found.sealed
     assert found.told("test") == ["test_it.py::test_it"]
     assert [file.name for file in found.files] == ["node.py"]
@@ -189,7 +189,7 @@ def test_edited_patch_counts_as_damaged(tmp_path: Path, changes: list[tuple[str,
     path = rewritten(tmp_path)
     changes = [(old.replace("@@ -2,4 +2,4 @@", hunk(path)), edited(new, path)) for old, new in changes]
     with pytest.raises(RepairError, match="is damaged: it was cut or edited"):
-        reading.read(rewritten(tmp_path, *changes))
+        patch_reader.read(rewritten(tmp_path, *changes))
 
 
 def hunk(path: Path) -> str:
@@ -213,14 +213,14 @@ def test_patch_with_two_sections_per_file_is_damaged(tmp_path: Path) -> None:
     path = rewritten(tmp_path)
     body = path.read_text().partition("diff --git")[2]
     with pytest.raises(RepairError, match="is damaged"):
-        reading.read(rewritten(tmp_path, (f"diff --git{body}", f"diff --git{body}diff --git{body}")))
+        patch_reader.read(rewritten(tmp_path, (f"diff --git{body}", f"diff --git{body}diff --git{body}")))
 
 
 def test_missing_patch_error_names_the_folder(tmp_path: Path) -> None:
     with pytest.raises(
         RepairError, match=r"gone\.patch cannot be read \(.*TARL writes patches to \.tarl/patches"
     ):
-        reading.read(tmp_path / "gone.patch")
+        patch_reader.read(tmp_path / "gone.patch")
 
 
 def test_partial_repair_is_readable_only_by_tarl(tmp_path: Path) -> None:
@@ -234,7 +234,7 @@ def test_partial_repair_is_readable_only_by_tarl(tmp_path: Path) -> None:
     assert all(line.startswith(QUOTE) for line in content.splitlines())
     assert unquoted(content) == diff.encode()
     assert unquoted(diff.encode()) == diff.encode()
-    found = reading.read(path)
+    found = patch_reader.read(path)
     assert found.told("partial") == ["regains 4 of 9"]
     (changed,) = found.files
     assert changed.exact(NODE.encode()) == NODE.replace("y = 2", "y = 3").encode()
@@ -260,9 +260,9 @@ ODD = [
 
 @pytest.mark.parametrize("name", ODD)
 def test_file_names_outside_the_project_are_refused(name: str) -> None:
-    assert not reading._inside(name)
+    assert not patch_reader._inside(name)
 
 
 @pytest.mark.parametrize("name", ["a.py", "a/b c.py", "...py", "a/..b/.gitignore", "git/tarl.py", "ö.py"])
 def test_file_names_inside_the_project_are_accepted(name: str) -> None:
-    assert reading._inside(name)
+    assert patch_reader._inside(name)

@@ -10,7 +10,7 @@ import pytest
 
 from pytest_tarl.designation import Designation
 from pytest_tarl.options import Options
-from pytest_tarl.resuming.conditions import changed, conditions
+from pytest_tarl.resuming.run_conditions import changed, conditions
 from pytest_tarl.sensors import Sensor
 
 SETTINGS = {

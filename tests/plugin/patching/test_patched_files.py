@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.errors import RefusedError, RepairError
-from pytest_tarl.patching.placing import located
+from pytest_tarl.patching.patched_files import located
 
 
 def patch(*names: str, root: Path | None = None, base: str = ".") -> Any:

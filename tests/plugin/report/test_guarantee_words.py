@@ -9,7 +9,7 @@ import hypothesis.strategies as st
 from hypothesis import given
 
 from pytest_tarl.model import Bound, Comparison, Guarantee
-from pytest_tarl.report.guarantees import SCOPE, brief, figure, percent, sentences, worlds
+from pytest_tarl.report.guarantee_words import SCOPE, brief, figure, percent, sentences, worlds
 
 STATED = Guarantee(
     episodes=200,

@@ -17,8 +17,8 @@ pytest.importorskip("dask")
 from pytest_tarl.fleet.clusters import Cluster, Clusters
 from pytest_tarl.fleet.components import Component
 from pytest_tarl.fleet.decomposition import Decomposition
-from pytest_tarl.fleet.document import document, schema, text
-from pytest_tarl.fleet.groups import Judged
+from pytest_tarl.fleet.json_result import document, schema, text
+from pytest_tarl.fleet.mission_groups import Judged
 from pytest_tarl.fleet.question import Answer, Question
 from pytest_tarl.model import Region, Verdict
 from tests.plugin.fleet.answers import answer, effect, evidence, group, robot, robots, status, unknown

@@ -13,7 +13,7 @@ pytest.importorskip("lsprotocol")
 from lsprotocol import types
 from lsprotocol.types import DiagnosticSeverity as Severity
 
-from pytest_tarl.editor import findings
+from pytest_tarl.editor import diagnostics
 from pytest_tarl.editor.positions import Places
 from tarl_lint.run.runner import Result
 from tests.plugin.editor.graphs import TEXT, finding, flow, span, step
@@ -27,14 +27,14 @@ def places(tmp_path: Path) -> Places:
 
 
 def one(found: Any, places: Places) -> types.Diagnostic:
-    (diagnostic,) = findings.diagnostics(Result(findings=(found,)), places)[found.span.path]
+    (diagnostic,) = diagnostics.diagnostics(Result(findings=(found,)), places)[found.span.path]
     return diagnostic
 
 
 def test_only_linted_files_and_findings_have_entries(places: Places) -> None:
     elsewhere = finding("TARL201", span=span(1, path="elsewhere.py"))
     result = Result(findings=(finding(of=flow()), elsewhere), texts={"pilot.py": TEXT, "other.py": "a\nb\n"})
-    counts = {path: len(shown) for path, shown in findings.diagnostics(result, places).items()}
+    counts = {path: len(shown) for path, shown in diagnostics.diagnostics(result, places).items()}
     assert counts == {"pilot.py": 1, "other.py": 0, "elsewhere.py": 1}
 
 
@@ -107,7 +107,7 @@ def test_unreadable_file_has_an_error_on_its_line(
     places: Places, line: int, start: tuple[int, int], end: tuple[int, int]
 ) -> None:
     error: Any = SimpleNamespace(path="pilot.py", line=line, message="invalid syntax")
-    shown = findings.diagnostics(Result(errors=(error,), texts={"pilot.py": TEXT}), places)["pilot.py"]
+    shown = diagnostics.diagnostics(Result(errors=(error,), texts={"pilot.py": TEXT}), places)["pilot.py"]
     assert [(one.severity, one.code, one.source) for one in shown] == [
         (Severity.Error, "TARL001", "tarl-lint")
     ]
@@ -126,7 +126,7 @@ def test_code_lenses_follow_the_order_of_the_file(places: Places) -> None:
         ),
         silenced=(finding(of=flow(topics=("/odom",), at=first)),),
     )
-    shown = findings.lenses(result, "pilot.py", places)
+    shown = diagnostics.lenses(result, "pilot.py", places)
     assert [one.range for one in shown] == [places.range(first), places.range(later)]
     assert [one.command and one.command.title for one in shown] == [
         "data of /odom",
@@ -145,7 +145,7 @@ def test_code_lenses_follow_the_order_of_the_file(places: Places) -> None:
     ],
 )
 def test_code_lens_names_each_topic_once(flows: Any, title: str) -> None:
-    assert findings.title(flows) == title
+    assert diagnostics.title(flows) == title
 
 
 def test_statements_of_other_files_are_located_in_these_files(places: Places, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
-from pytest_tarl.patching.definitions import (
+from pytest_tarl.patching.constant_definitions import (
     Place,
     _entry_name,
     _name,

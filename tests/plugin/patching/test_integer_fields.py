@@ -7,7 +7,7 @@ import ast
 import pytest
 
 from pytest_tarl.patching.document import document
-from pytest_tarl.patching.fields import in_integer_field
+from pytest_tarl.patching.integer_fields import in_integer_field
 
 HEAD = (
     "import std_msgs.msg\nfrom std_msgs.msg import Float64, Int32\nfrom std_msgs.msg import UInt8 as Byte\n"
