@@ -22,9 +22,9 @@ from pytest_tarl.repairing.rescaled_messages import rescaled
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.confirming import confirmed
-from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.limits_in_turn import Limit
 from pytest_tarl.searching.search import Candidate, Trials
+from pytest_tarl.searching.suggestions import Hint
 from tarl_lint.model import Operand
 
 SOON = 15  # number of episodes before the changes with the clearest symptoms are tried

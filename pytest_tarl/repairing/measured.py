@@ -22,8 +22,8 @@ from pytest_tarl.patching.document import Document, argument_names, document
 from pytest_tarl.repairing.mission_pairs import Recorded, series
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.separating import between_groups, reaching, separating
-from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.plainness import Oddness, writing
+from pytest_tarl.searching.suggestions import Hint
 from pytest_tarl.symptoms.series import Pair
 from tarl_lint.model import Operand
 

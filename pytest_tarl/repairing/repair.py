@@ -38,6 +38,7 @@ from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, label
 from pytest_tarl.searching.strategy import Strategy
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.sweep import Sweep
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
@@ -131,26 +132,22 @@ def _search(
         trials.reserve, trials.worth = round(RESERVE * (purse.episodes - purse.spent)), mutants.order.goal
     first = found.accepted is None
     early = Early(mutants.order, _chief(searched), trials)
-    strategy_with = partial_call(
-        strategies.strategy,
-        mutants,
-        method,
-        searched,
-        trials,
+    suggestions = Suggestions(
         measured=early.measured,
-        reached=early.reached,
-        entered=early.entered,
+        reached=partial_call(early.reached, mutants),
+        entered=partial_call(early.entered, mutants),
     )
     if share < 1.0:
-        strategy = strategy_with(
+        suggestions = replace(
+            suggestions,
             interlude=early.candidates,
             due=early.due,
             corrections=early.before_extreme,
-            following=lambda one: following(mutants.order, one),
-            proportional=lambda used: proportional(mutants.order, used),
+            following=partial_call(following, mutants.order),
+            proportional=partial_call(proportional, mutants.order),
+            scaled=lambda one: scaled_command(mutants.order.analysis, one),
         )
-    else:
-        strategy = strategy_with()
+    strategy = strategies.strategy(mutants, method, searched, trials, suggestions)
     try:
         if found.accepted is None:
             found.accepted = examiner.first(strategy.candidates(), trials)

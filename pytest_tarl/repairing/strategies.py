@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl import seeds
@@ -13,20 +13,17 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.name_scopes import name_scope
 from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.scaled_commands import scaled_command
 from pytest_tarl.repairing.scales import charts
 from pytest_tarl.repairing.table_entries import entry_uses
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
-from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.halving import Halving
-from pytest_tarl.searching.laws import Proportional
-from pytest_tarl.searching.limits_in_turn import Limit
 from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import Candidate, Trials
+from pytest_tarl.searching.search import Trials
 from pytest_tarl.searching.strategy import Strategy
+from pytest_tarl.searching.suggestions import NO_SUGGESTIONS, Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import sets_up
 from tarl_lint.api import Analysis
@@ -40,22 +37,11 @@ def strategy(
     method: str,
     guards: Sequence[Guard],
     trials: Trials,
-    interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
-    measured: Callable[[Sequence[Operand]], Sequence[Hint]] = lambda _: (),
-    corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
-    following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
-    reached: Callable[[Mutants, Candidate], Sequence[Limit]] = lambda *_: (),
-    entered: Callable[[Mutants, Candidate], Sequence[Operand]] = lambda *_: (),
-    proportional: Proportional = lambda _: iter(()),
-    due: Callable[[float], bool] = lambda _: False,
+    suggestions: Suggestions = NO_SUGGESTIONS,
 ) -> Strategy:
     """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins.
 
-    Before each of its steps, the sweep calls `interlude` with the largest gain so far; `due` says whether `interlude`
-    then begins its structural changes. `measured` returns changes that recorded missions suggest. `reached` returns
-    limits that missions with a change reach, and `entered` returns constants of statements that missions run only with
-    a change. `corrections` is called before the sweep yields an extreme change. `following` returns candidates in which
-    a changed constant follows a sensor or a variable. `proportional` does the same for an unchanged constant.
+    Only the sweep asks for `suggestions`.
     """
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
@@ -74,15 +60,7 @@ def strategy(
             structure_follows=order.options.structure,
             charts=charts(order, moved),
             scope=name_scope(order.analysis),
-            interlude=interlude,
-            due=due,
-            measured=lambda: measured(moved),
-            corrections=corrections,
-            following=following,
-            reached=lambda candidate: reached(mutants, candidate),
-            entered=lambda candidate: entered(mutants, candidate),
-            proportional=proportional,
-            scaled=lambda candidate: scaled_command(order.analysis, candidate),
+            suggestions=suggestions,
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -16,7 +16,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.acting import Acting
 from pytest_tarl.searching.adjusting import Adjusting
 from pytest_tarl.searching.combining import Combining
-from pytest_tarl.searching.constants_first import Scaled, constants_first
+from pytest_tarl.searching.constants_first import constants_first
 from pytest_tarl.searching.divided import divided, stronger_and_weaker
 from pytest_tarl.searching.farther import farther
 from pytest_tarl.searching.forward_selection import ForwardSelection, Settled
@@ -27,6 +27,7 @@ from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.refining import between_neighbours, bracket
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.suggestions import NO_SUGGESTIONS, Suggestions
 from pytest_tarl.searching.twins import twin_of
 from pytest_tarl.searching.units import Scope, Unit, everywhere, runs_once
 from pytest_tarl.searching.uses import Uses
@@ -72,12 +73,8 @@ class Attempts:
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         finer: Callable[[Operand], object] = lambda _: None,
-        following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
         scope: Scope = everywhere,
-        interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
-        due: Callable[[float], bool] = lambda _: False,
-        corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
-        scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
+        suggestions: Suggestions = NO_SUGGESTIONS,
     ) -> None:
         self.units = units
         self.mutate = mutate
@@ -90,13 +87,10 @@ class Attempts:
         self.weaker = weaker
         self.given = given
         self.finer = finer
-        self.following = following
         self.scope = scope
-        self._structures = interlude
-        self._due = due
+        self.suggestions = suggestions
+        self.corrections = suggestions.corrections
         self._went_farther = False
-        self._scaled = scaled
-        self.corrections = corrections
         self.slack = SLACK * goal.wanted
         self.turn = 0
         # units whose change was confirmed and yielded, but refused by the caller
@@ -125,10 +119,11 @@ class Attempts:
         If anything gained, try farther steps on named constants before the first structural changes. Farther steps are
         tried only once.
         """
-        if self._due(gain) and self.gains.anything():
+        if self.suggestions.due(gain) and self.gains.anything():
             yield from self.farther()
             gain = max(gain, self.gains.best())
-        yield from constants_first(self._structures(gain), self, self.trials, self.goal, self._scaled)
+        changes = self.suggestions.interlude(gain)
+        yield from constants_first(changes, self, self.trials, self.goal, self.suggestions.scaled)
 
     def farther(self) -> Iterator[Candidate]:
         """Try farther steps on named constants, once (see `farther`)."""
@@ -273,7 +268,7 @@ class Attempts:
         if middle is None:
             return
         self._divided.add(unit)
-        for law in self.following(Candidate(unit.mutations(self.mutate, middle), guard)):
+        for law in self.suggestions.following(Candidate(unit.mutations(self.mutate, middle), guard)):
             for one in stronger_and_weaker(law):
                 if self._near(one, pair) and self._settled.holds(one, self.trials, self.goal, pair):
                     yield one

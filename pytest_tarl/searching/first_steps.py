@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.clamps import BOUNDING
@@ -13,9 +13,9 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.failing_otherwise import in_between
 from pytest_tarl.searching.forward_selection import Joint
-from pytest_tarl.searching.further_on import Entered, further_on
-from pytest_tarl.searching.laws import Proportional, laws
-from pytest_tarl.searching.limits_in_turn import LimitsInTurn, Reached
+from pytest_tarl.searching.further_on import further_on
+from pytest_tarl.searching.laws import laws
+from pytest_tarl.searching.limits_in_turn import LimitsInTurn
 from pytest_tarl.searching.plainness import Oddness, kind, named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.search import Candidate
@@ -23,8 +23,6 @@ from pytest_tarl.searching.twins import assigned_alone
 from pytest_tarl.searching.units import NEAR, Unit
 from pytest_tarl.searching.unmasking import lasting, longer
 from tarl_lint.model import Operand
-
-Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each with its factor
 
 # number of best units that are tried with larger steps before the next guard is tried
 LEADING = 3
@@ -55,31 +53,24 @@ def deciding(text: str) -> bool:
 class FirstSteps:
     """Try the first steps of one search.
 
-    `responding` contains ids of statements whose constants raised the reward. `measured` returns changes that recorded
-    missions suggest. It is called once, if the first steps on named constants gained less than `HALF`. `reached` takes
-    a change and returns the limits that missions with this change reach only in the drifted world (see
-    `limits_in_turn`). `entered` takes a change and returns the constants of statements that run only with this change
-    (see `further_on`). `proportional` returns candidates in which a constant is proportional to a sensor or a variable
-    (see `laws`).
+    `operands` are the constants of the search. `responding` contains ids of statements whose constants raised the
+    reward. Changes that recorded missions suggest are tried once, if the first steps on named constants gained less
+    than `HALF`.
     """
 
     def __init__(
         self,
         attempts: Attempts,
         crossing: Crossing,
+        operands: Sequence[Operand],
         responding: Collection[str] = (),
-        measured: Callable[[], Sequence[Hint]] = tuple,
-        reached: Reached = lambda _: (),
-        entered: Entered = lambda _: (),
-        proportional: Proportional = lambda _: iter(()),
     ) -> None:
         self.attempts = attempts
-        self.entered = entered
-        self._proportional: Proportional | None = proportional
         self.crossing = crossing
+        self.operands = operands
         self.responding = responding
-        self._measured: Callable[[], Sequence[Hint]] | None = measured
-        self._reached: Reached | None = reached
+        # phases of the search that run once
+        self._measured = self._limited = self._lawful = False
 
     def everywhere(self, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Increase, then decrease the named constants without a condition. Conditions are tried later.
@@ -194,19 +185,18 @@ class FirstSteps:
         """If nothing gained, once let named constants that lost in both directions follow a quantity that varies."""
         tries, gains = self.attempts, self.attempts.gains
         lost = gains.clearly_lost(guard, named(tries.units), NEAR)
-        if self._proportional is not None and lost and not gains.anything():
-            proportional, self._proportional = self._proportional, None
-            yield from laws(lost, proportional, tries.joining({}))
+        if not self._lawful and lost and not gains.anything():
+            self._lawful = True
+            yield from laws(lost, tries.suggestions.proportional, tries.joining({}))
 
     def _limits(self, guard: Guard) -> Iterator[Candidate]:
         """Once, relax the limits that missions reach, alone and together with changes that made missions longest.
 
         Corrections of wrong readings are tried first.
         """
-        tries, reached = self.attempts, self._reached
-        self._reached = None
-        if reached is None:
+        if self._limited:
             return
+        self._limited, tries = True, self.attempts
         yield from tries.interlude(tries.gains.best())
         joining, whole = tries.joining({}), self._whole
         parts = [
@@ -217,10 +207,10 @@ class FirstSteps:
         ]
         longest = sorted(parts, key=lambda one: -lasting(one, joining))[:LONGEST]
         bases = [one for one in longest if longer(one, joining)]
-        yield from LimitsInTurn(joining, whole, reached, guard).candidates(bases)
+        yield from LimitsInTurn(joining, whole, tries.suggestions.reached, guard).candidates(bases)
         if not tries.gains.anything():
             rest = named(dict.fromkeys(whole.values()))
-            yield from further_on(bases, rest, self.entered, joining)
+            yield from further_on(bases, rest, tries.suggestions.entered, joining)
 
     def _unconditional(self, guard: Guard) -> Guard:
         """Return `ALWAYS` if the search may change constants without a condition, else the guard."""
@@ -237,10 +227,11 @@ class FirstSteps:
 
         The suggestions come from whole missions, so the changes have no condition if possible.
         """
-        tries, measured = self.attempts, self._measured
-        self._measured = None
+        if self._measured:
+            return
+        self._measured, tries = True, self.attempts
         whole, tried = self._whole, False
-        for hint in measured() if measured is not None else ():
+        for hint in tries.suggestions.measured(self.operands):
             parts = tuple({whole[operand]: factor for operand, factor in hint if operand in whole}.items())
             tried = tried or bool(parts)
             if len(parts) == 1:

@@ -16,17 +16,14 @@ from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
 from pytest_tarl.searching.attempts import FLIP, Attempts
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.constants_first import Scaled
 from pytest_tarl.searching.crossing import Crossing
 from pytest_tarl.searching.families import families
-from pytest_tarl.searching.first_steps import BETWEEN, FINER, HALF, FirstSteps, Hint
-from pytest_tarl.searching.further_on import Entered
-from pytest_tarl.searching.laws import Proportional
-from pytest_tarl.searching.limits_in_turn import Reached
+from pytest_tarl.searching.first_steps import BETWEEN, FINER, HALF, FirstSteps
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import FURTHER
 from pytest_tarl.searching.screening import BLOCK, blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.suggestions import NO_SUGGESTIONS, Suggestions
 from pytest_tarl.searching.twins import twins
 from pytest_tarl.searching.units import (
     NEAR,
@@ -65,14 +62,8 @@ class Sweep:
     except if something gains at least `BRIEFLY`. `responding` contains the ids of statements whose constants increased
     the reward.
 
-    `interlude` is called with the largest gain before each step and each long phase, and may yield candidates of
-    another search. `due` says whether `interlude` would now begin the structural changes; before that, named constants
-    get farther steps. `measured` returns changes that recorded missions suggest. `reached`, `entered` and
-    `proportional` are described in `FirstSteps`. `corrections` returns confirmed corrections of sensor readings, which
-    come before extreme changes. `finer` is called with an operand that nearly earned enough; `mutate` may then allow
-    values between those of the operand's grid. `following` takes a candidate and returns candidates in which the
-    changed constant follows a sensor or a variable. `scaled` says whether a change of another search scales a command
-    (see `constants_first`).
+    `finer` is called with an operand that nearly earned enough; `mutate` may then allow values between those of the
+    operand's grid.
     """
 
     def __init__(
@@ -92,17 +83,9 @@ class Sweep:
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
         finer: Callable[[Operand], object] = lambda _: None,
-        following: Callable[[Candidate], Iterator[Candidate]] = lambda _: iter(()),
         responding: Collection[str] = (),
         scope: Scope = everywhere,
-        interlude: Callable[[float], Iterator[Candidate]] = lambda _: iter(()),
-        due: Callable[[float], bool] = lambda _: False,
-        measured: Callable[[], Sequence[Hint]] = tuple,
-        corrections: Callable[[], Iterator[Candidate]] = lambda: iter(()),
-        reached: Reached = lambda _: (),
-        entered: Entered = lambda _: (),
-        proportional: Proportional = lambda _: iter(()),
-        scaled: Callable[[Candidate], Scaled | None] = lambda _: None,
+        suggestions: Suggestions = NO_SUGGESTIONS,
     ) -> None:
         self.structure_follows = structure_follows
         self.brief = brief
@@ -125,17 +108,11 @@ class Sweep:
             weaker=weaker,
             given=given,
             finer=finer,
-            following=following,
             scope=scope,
-            interlude=interlude,
-            due=due,
-            corrections=corrections,
-            scaled=scaled,
+            suggestions=suggestions,
         )
         self.crossing = Crossing(self.attempts)
-        self.first_steps = FirstSteps(
-            self.attempts, self.crossing, responding, measured, reached, entered, proportional
-        )
+        self.first_steps = FirstSteps(self.attempts, self.crossing, operands, responding)
         self._families: tuple[Unit, ...] = ()
         # units that already got their first steps before the screening
         self._swept: frozenset[Unit] = frozenset()

@@ -12,7 +12,7 @@ import pytest
 from pytest_tarl.instrumentation.sites import plan
 from pytest_tarl.repairing.measured import MOST, hints
 from pytest_tarl.repairing.strategies import operands
-from pytest_tarl.searching.first_steps import Hint
+from pytest_tarl.searching.suggestions import Hint
 from tarl_lint.api import Analysis, analyse
 
 HAND = """\

@@ -98,7 +98,7 @@ def searched(
     """Run one search; return its trials and the budget."""
     made: list[Any] = []
 
-    def strategy(_: Any, name: str, guards: Any, trials: Any, **_more: Any) -> Search:
+    def strategy(_: Any, name: str, guards: Any, trials: Any, _more: Any) -> Search:
         made.append(trials)
         assert (name, guards) == (method, (ALWAYS,))
         return Search(trials, **search)

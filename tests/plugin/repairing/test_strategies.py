@@ -140,7 +140,7 @@ def test_sweep_gets_the_constants_that_were_set_aside(monkeypatch: pytest.Monkey
     assert found.given[4] == "goal"
     assert codes(found.named["aside"]) == ["20.0 in 29"]
     assert found.named["structure_follows"] is True
-    assert list(found.named["interlude"](0.0)) == []
+    assert list(found.named["suggestions"].interlude(0.0)) == []
     assert {*found.given[0], *found.named["late"]} == {*operands(order)}
 
 

@@ -15,6 +15,7 @@ from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.divided import POWERS, divided, stronger_and_weaker
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.units import units
 from tests.plugin.searching.test_search import operand
 
@@ -79,7 +80,9 @@ def test_confirmed_law_is_yielded_once() -> None:
         yield Candidate((Mutation(SPEED, 1.0, form=LAW),), ALWAYS)
 
     trials = Trials(run, 99)
-    search = Attempts((UNIT,), mutations, (ALWAYS,), trials, GOAL, following=following)
+    search = Attempts(
+        (UNIT,), mutations, (ALWAYS,), trials, GOAL, suggestions=Suggestions(following=following)
+    )
     found = [
         one
         for factor, pair in ((2.2, 0), (5.0, 1), (2.25, 0))

@@ -12,6 +12,7 @@ from pytest_tarl.searching.attempts import Attempts
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.farther import BEARABLE, MOST
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import units
 from tests.plugin.searching.test_gains import constant
@@ -87,7 +88,9 @@ def test_farther_steps_come_before_structural_changes(gain: float, farther: list
         steps.extend(factors.values())
         return gain if "B" in factors else -0.1
 
-    tries, ran = trying(earned, "A", "B", interlude=structures, due=lambda _: len(steps) > 1)
+    tries, ran = trying(
+        earned, "A", "B", suggestions=Suggestions(interlude=structures, due=lambda _: len(steps) > 1)
+    )
     for factor in (2.2, 0.4):
         list(tries.each(factor, ALWAYS, tries.units, 0))
     list(tries.interlude(0.0))

@@ -13,6 +13,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.further_on import MOST, further_on
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -82,7 +83,9 @@ def test_sweep_combines_a_change_that_leads_missions_further(helps: bool) -> Non
     world = Climber()
     trials = Trials(world.run, 60)
     asked = world.entered if helps else lambda _: ()
-    sweep = Sweep((*REST[:6], FORCE, REACH), mutations, (ALWAYS,), trials, GOAL, entered=asked)
+    sweep = Sweep(
+        (*REST[:6], FORCE, REACH), mutations, (ALWAYS,), trials, GOAL, suggestions=Suggestions(entered=asked)
+    )
     found = None
     with suppress(BudgetSpentError):
         found = next(sweep.candidates(), None)

@@ -15,6 +15,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection
 from pytest_tarl.searching.laws import CONSTANTS, laws
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials, operand_effect
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -89,6 +90,8 @@ def test_large_exponent_is_reduced_for_hard_missions() -> None:
 
 def test_laws_are_tried_if_raising_and_lowering_lose() -> None:
     trials = Trials(run, 40)
-    sweep = Sweep((OTHER, LIGHT), mutations, (ALWAYS,), trials, GOAL, proportional=proportional)
+    sweep = Sweep(
+        (OTHER, LIGHT), mutations, (ALWAYS,), trials, GOAL, suggestions=Suggestions(proportional=proportional)
+    )
     found = next(sweep.candidates())
     assert [one.form for one in found.mutations] == [FORM]

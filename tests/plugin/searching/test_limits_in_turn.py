@@ -12,6 +12,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.limits_in_turn import EPISODES, Limit, LimitsInTurn
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -126,7 +127,14 @@ def test_the_sweep_relaxes_limits_before_it_tries_further_steps() -> None:
     world = Capper(TURNS, TIME)
     trials = Trials(world.run, 300)
     found = next(
-        Sweep((*REST, TIME, TURNS), mutations, (ALWAYS,), trials, GOAL, reached=world.reached).candidates()
+        Sweep(
+            (*REST, TIME, TURNS),
+            mutations,
+            (ALWAYS,),
+            trials,
+            GOAL,
+            suggestions=Suggestions(reached=world.reached),
+        ).candidates()
     )
     assert factors(found) == {TURNS: 2.2, TIME: 2.2}
     assert trials.spent < 40
@@ -136,7 +144,9 @@ def test_sweep_skips_limits_after_a_large_gain() -> None:
     world = Capper(TURNS)
     trials = Trials(world.run, 300)
     found = next(
-        Sweep((*REST, TURNS), mutations, (ALWAYS,), trials, GOAL, reached=world.reached).candidates()
+        Sweep(
+            (*REST, TURNS), mutations, (ALWAYS,), trials, GOAL, suggestions=Suggestions(reached=world.reached)
+        ).candidates()
     )
     assert factors(found) == {TURNS: 2.2}
     assert world.asked == []

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.first_steps import Hint
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.suggestions import Hint, Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.model import Operand
 from tests.plugin.searching.test_gains import constant
@@ -26,12 +26,12 @@ def searched(needed: Mapping[Operand, float], hints: Sequence[Hint]) -> tuple[Ca
         right = all(abs(by.get(one, 1.0) / factor - 1.0) < 0.01 for one, factor in needed.items())
         return Outcome(10.0 if right else 0.0, right, steps=50)
 
-    def measured() -> Sequence[Hint]:
+    def measured(_: object) -> Sequence[Hint]:
         asked.append(True)
         return hints
 
     trials = Trials(run, 300)
-    sweep = Sweep(NAMES, mutations, (ALWAYS,), trials, GOAL, measured=measured)
+    sweep = Sweep(NAMES, mutations, (ALWAYS,), trials, GOAL, suggestions=Suggestions(measured=measured))
     return next(sweep.candidates(), None), trials, len(asked)
 
 

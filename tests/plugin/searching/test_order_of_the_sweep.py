@@ -16,6 +16,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.plateau import STEPS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials, Wanted
+from pytest_tarl.searching.suggestions import Suggestions
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import units
 from tarl_lint.model import Operand
@@ -238,7 +239,9 @@ def test_interlude_gets_the_largest_gain_before_each_step() -> None:
         return iter(())
 
     search, _ = sweeping(
-        lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0, [LITERAL], interlude=interlude
+        lambda changes: 4.0 if changes.get(LITERAL) == 6.6 else 0.0,
+        [LITERAL],
+        suggestions=Suggestions(interlude=interlude),
     )
     list(search.candidates())
     assert heard[:2] == [0.0, 4.0]
@@ -247,7 +250,7 @@ def test_interlude_gets_the_largest_gain_before_each_step() -> None:
 
 def test_the_interlude_may_yield_candidates_of_another_search() -> None:
     other = Candidate((), WET)
-    search, seen = sweeping(dead, [LITERAL], interlude=lambda _: iter([other]))
+    search, seen = sweeping(dead, [LITERAL], suggestions=Suggestions(interlude=lambda _: iter([other])))
     assert next(search.candidates()) == other
     assert seen == []
 
