@@ -124,10 +124,10 @@ class Examiner:
                     candidate, mutations=examined.candidate.changes
                 )  # keep the centred values, so that they are not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
-            if wide and examined.reason in (*TOO_LITTLE, *WEAK):
+            if wide and self._too_little(examined):
                 # this guard holds wherever the guard of the search holds, so narrower guards cannot gain more
                 break
-            if examined.fresh and examined.reason in TOO_LITTLE and self._holds_throughout(examined, trials):
+            if examined.fresh and self._too_little(examined) and self._holds_throughout(examined, trials):
                 break  # without the condition, drifted missions are the same, so no other condition can gain more
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),
@@ -143,6 +143,13 @@ class Examiner:
             if accepted is not None or self._exhausted():
                 return accepted
         return None
+
+    def _too_little(self, examined: Tried) -> bool:
+        """Return whether a candidate earns too little under the drift.
+
+        A loss in the designed world does not count, even if its size was not shown: a narrower condition prevents it.
+        """
+        return examined.reason in (*TOO_LITTLE, *WEAK) and examined.candidate not in self._missed.costly
 
     def _holds_throughout(self, examined: Tried, trials: Trials) -> bool:
         """Return whether the condition never held in the designed world and makes no difference in drifted missions."""
@@ -195,7 +202,7 @@ class Examiner:
             if isinstance(with_guard, Accepted) or self._exhausted():
                 return with_guard
             found = with_guard
-            if found.reason in (*TOO_LITTLE, *WEAK):
+            if self._too_little(found):
                 weak.append(guard)
                 if guard == candidates.ALWAYS:
                     break  # no narrower condition can gain more reward

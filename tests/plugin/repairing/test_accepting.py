@@ -72,6 +72,9 @@ LOT: dict[str, World] = {
     ),
     "bad as designed": lambda seed, drifted: DESIGNED if drifted else 4.0,
     "good": lambda seed, drifted: DESIGNED,
+    "costs about the margin as designed": lambda seed, drifted: (
+        DESIGNED - (0.0 if drifted else 0.45 * (seed % 3))
+    ),
     "slightly better as drifted": lambda seed, drifted: DESIGNED + 0.1 if drifted else 4.0,
 }
 ENDS = {
@@ -236,11 +239,14 @@ class Guarded(Field):
 
 
 def examined(
-    kinds: dict[Guard, str], monkeypatch: pytest.MonkeyPatch, never: Guard | None = None
+    kinds: dict[Guard, str],
+    monkeypatch: pytest.MonkeyPatch,
+    never: Guard | None = None,
+    reasons: list[str] | None = None,
 ) -> tuple[list[Guard], Guard | None]:
     """Return the conditions that were examined, in order, and that of the accepted candidate.
 
-    The guard `never` holds in no designed mission.
+    The guard `never` holds in no designed mission. `reasons` receives the reasons of the refused candidates.
     """
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes",
@@ -250,6 +256,8 @@ def examined(
     examiner = Examiner(field, tuple(kinds))
     trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
     accepted = examiner.first(iter(field.candidates), trials)
+    if reasons is not None:
+        reasons += [one.reason for one in examiner.tried if one.reason]
     return [one.candidate.guard for one in examiner.tried], accepted.candidate.guard if accepted else None
 
 
@@ -296,6 +304,16 @@ def test_exact_condition_is_the_last_condition_tried(
     assert examined(kinds, monkeypatch) == ([always, wet, dark], dark)
     kinds[always] = "slightly better as drifted"  # the guard does not hold in all drifted steps
     assert examined(kinds, monkeypatch, never=wet) == ([always, wet, dark], dark)
+
+
+def test_a_condition_is_tried_if_a_test_did_not_show_how_much_a_change_costs_in_the_designed_world(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    always, wet, dark, _ = GUARDS
+    kinds = {always: "costs about the margin as designed", wet: "good", dark: "bad at once"}
+    reasons: list[str] = []
+    assert examined(kinds, monkeypatch, reasons=reasons) == ([always, wet], wet)
+    assert reasons == ["not shown"]
 
 
 def test_narrower_condition_is_skipped_after_a_low_reward(
