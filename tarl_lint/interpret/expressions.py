@@ -141,7 +141,7 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
     if said is not None:
         return said
     found = read_item(ctx, base, index)
-    for obj in base.objects:
+    for obj in base.objects if index.deps or index.pts else ():
         if obj.kind == "mapping" and _makes(ctx, obj) and (made := ctx.use(index)):
             updates.weaken(ctx, obj, KEYS, Value(made))  # a `defaultdict` adds the key
     return Value(found.deps | keys, found.pts) if keys else found

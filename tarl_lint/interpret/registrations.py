@@ -47,6 +47,7 @@ class Registrations:
         self.calling: dict[Hashable, bool] = {}
         self.asking: dict[ir.Loop, bool] = {}  # cache of `asks`
         self.naming: dict[ir.Loop, bool] = {}  # cache of `names_attributes`
+        self.calls: dict[ir.Loop, list[ast.Call]] = {}  # cache of `_calls`
         self.sending: dict[str, bool] = {}  # name → whether a call of it publishes
         self.rows: dict[ir.Loop, Literal["direct", "helper", ""]] = {}
 
@@ -84,13 +85,19 @@ class Registrations:
         if found is None:
             names = _names(loop.target)
             found = self.naming[loop] = any(
-                isinstance(one, ast.Call)
-                and isinstance(one.func, ast.Name)
+                isinstance(one.func, ast.Name)
                 and one.func.id in BY_NAME
                 and len(one.args) > 1
                 and _mentions(one.args[1], names)
-                for one in walk(*loop.nodes)
+                for one in self._calls(loop)
             )
+        return found
+
+    def _calls(self, loop: ir.Loop) -> list[ast.Call]:
+        """Return the calls in the body of a loop."""
+        found = self.calls.get(loop)
+        if found is None:
+            found = self.calls[loop] = [one for one in walk(*loop.nodes) if isinstance(one, ast.Call)]
         return found
 
     def publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
@@ -106,9 +113,9 @@ class Registrations:
     def _publishes(self, loop: ir.Loop) -> Literal["direct", "helper", ""]:
         targets = _names(loop.target)
         helpers: list[str] = []
-        for one in walk(*loop.nodes):
-            name = last_name(one.func) if isinstance(one, ast.Call) else ""
-            if not isinstance(one, ast.Call) or not name:
+        for one in self._calls(loop):
+            name = last_name(one.func)
+            if not name:
                 continue
             receiver = one.func.value if isinstance(one.func, ast.Attribute) else one.func
             if name in SENDING and _mentions(receiver, targets):
