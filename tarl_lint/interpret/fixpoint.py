@@ -23,6 +23,7 @@ from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
 from tarl_lint.models import parts
+from tarl_lint.models.ros import registered_roots
 from tarl_lint.prefilter.by_words import endpoint_words
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
@@ -96,6 +97,7 @@ class Linker(Interpreter):
         while parts.connect(self):
             self._settle()
         carry_nodes.settle(self.graph)
+        registered_roots.connect(self)
         self._forget_runs()
 
     def _forget_runs(self) -> None:

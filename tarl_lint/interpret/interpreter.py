@@ -13,7 +13,7 @@ from tarl_lint.interpret.budget import MAX_APART, READS_PER_STATEMENT
 from tarl_lint.interpret.operations import Operations
 from tarl_lint.interpret.registrations import Registrations
 from tarl_lint.interpret.run_order import Group, Part
-from tarl_lint.interpret.state import NullnessFacts, Work
+from tarl_lint.interpret.state import NullnessFacts, Registered, Work
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
 from tarl_lint.ir.exception_types import exception_types
@@ -92,6 +92,7 @@ class Interpreter:
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects that are arguments of roots
+        self.registered: dict[Hashable, Registered] = {}  # root → the calls that register it
         self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
         # sources by path, position and topics; for a launched node, the key has the call context instead of the
         # topics

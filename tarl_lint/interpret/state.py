@@ -41,6 +41,15 @@ class NullnessFacts:
 
 
 @dataclass(slots=True, eq=False)
+class Registered:
+    """The calls that register a root, as nodes that depend on the conditions of these calls."""
+
+    node: int  # the node on which the root's publish calls depend
+    ways: set[int] = field(default_factory=set)
+    always: bool = False  # whether the root runs without such a call
+
+
+@dataclass(slots=True, eq=False)
 class Work:
     """The work done, in statements: in this run of a root, and by each program in earlier runs."""
 

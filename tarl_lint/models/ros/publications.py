@@ -214,6 +214,8 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     caller, call = frame.caller, frame.call
     if caller is None or call is None:
         ctx.graph.depend(node, [n for n, _ in frame.guards])
+        if (registered := ctx.registered.get(ctx.store.root.key)) is not None:
+            ctx.graph.depend(node, (registered.node,))
         return
     if frame.shared:
         ctx.graph.depend(node, [n for n, _ in shared_contexts.conditions(ctx, frame)])

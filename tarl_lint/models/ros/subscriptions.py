@@ -22,7 +22,7 @@ from tarl_lint.memory.shared import Root
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
 from tarl_lint.models import context_managers, sizes
-from tarl_lint.models.ros import publications
+from tarl_lint.models.ros import publications, registered_roots
 from tarl_lint.models.ros.endpoints import NAMESPACE, Acceptance, Kind, Publisher, SourceRecord
 from tarl_lint.models.ros.publications import type_names, whole_type_names
 from tarl_lint.models.smach import LATER
@@ -288,6 +288,7 @@ def call_when(
     `guards` are the nodes of the decisions that determine whether ROS calls the function.
     """
     root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
+    registered_roots.note(ctx, root.key)
     root.maker = ctx.store.root
     root.program = program or root.maker.program
     if root.key not in ctx.roots and _too_many(ctx, root):
