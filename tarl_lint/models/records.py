@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from typing import Final
 
 from tarl_lint.interpret import call_contexts, calls, expressions
@@ -21,6 +21,7 @@ from tarl_lint.memory.values import (
     Obj,
     Value,
     const,
+    function_of,
     in_order,
     join,
     join_all,
@@ -50,7 +51,7 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
     given = dict(named)
     rest = given.pop("*", None)
     mapping = given.pop("**", None)
-    numbered, arriving = _named_tuple(cls), iter(plain)
+    numbered, arriving, stored = _named_tuple(cls), iter(plain), dict[str, Value]()
     for number, (owner, name) in enumerate(_fields(cls)):
         options = _options(ctx, owner, name)
         inside = not _says(options, "init", False)
@@ -64,6 +65,7 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
             value = passed if passed is not None else _preset(ctx, owner, name, frame, call, number)
         if value is None:
             continue
+        stored[name] = value
         ctx.store.put((obj, name), value)
         if numbered:
             ctx.store.put((obj, item_field(number)), value)
@@ -73,14 +75,20 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
     if plain and external and not numbered:
         updates.add_element(ctx, pointer(obj), Value(call_contexts.all_used(ctx, (plain, {}))))
     senders.inherit(ctx, obj, arguments, frame, call)
-    _after(ctx, obj, cls, frame, call)
+    _after(ctx, obj, cls, stored, frame, call)
 
 
-def _after(ctx: Interpreter, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) -> None:
+def _after(
+    ctx: Interpreter, obj: Obj, cls: Obj, stored: Mapping[str, Value], frame: Frame, call: ir.Call
+) -> None:
+    """Call `__post_init__`; its parameters are the fields with `InitVar`, which have the same names."""
     for owner in lineage(cls):
         after = ctx.store.get((owner, "__post_init__"))
         if after is not None:
-            calls.call_value(ctx, heap.bind(ctx, after, obj, owner), ([], {}), frame, call)
+            taken = [function_of(one) for one in after.objects]
+            names = {p.name for function in taken if function is not None for p in function.parameters}
+            given = {name: value for name, value in stored.items() if name in names}
+            calls.call_value(ctx, heap.bind(ctx, after, obj, owner), ([], given), frame, call)
             return
 
 

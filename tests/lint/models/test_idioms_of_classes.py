@@ -7,7 +7,7 @@ import pytest
 from tests.lint.models.marked import differing_topics, sections
 
 HEAD = """\
-import collections, contextlib, itertools, rospy
+import collections, contextlib, dataclasses, itertools, rospy
 from std_msgs.msg import Float64, String
 out = rospy.Publisher("out", Float64, queue_size=1)
 """
@@ -51,6 +51,18 @@ robot = Wrapper(Base())
 def scan(msg):
     robot.drive(msg.data)
     robot.own(1.0)
+### what only the constructor of a dataclass gets
+@dataclasses.dataclass
+class Pose:
+    x: float
+    degrees: dataclasses.InitVar[float] = 0.0
+    yaw: float = dataclasses.field(init=False)
+    def __post_init__(self, degrees):
+        self.yaw = 3.14 * degrees
+def scan(msg):
+    out.publish(Pose(msg.data, 1.0).yaw)  # clean
+    out.publish(Pose(1.0, msg.data).yaw)  # scan:data
+    out.publish(Pose(1.0, msg.data).x)  # clean
 ### properties made by a call
 class Motor:
     def __init__(self):
