@@ -69,12 +69,12 @@ def lent(table: Floats, recorded: ListSample, cells: Sequence[Cell], without: Se
 
     Similar cells differ only in the sensors that are left out. The mean is weighted by visits.
     """
-    _, row = groups(cells, without)
+    alike, row = groups(cells, without)
     visits = recorded.visits
     events = visits.state != START
     flat = sum_by(visits.state[events] - 1, visits.count[events], table.size).reshape(table.shape)
     weight = np.where(np.isnan(table), 0.0, flat)
-    worth, often = (np.zeros((int(row.max(initial=-1)) + 1, table.shape[1])) for _ in range(2))
+    worth, often = (np.zeros((len(alike), table.shape[1])) for _ in range(2))
     np.add.at(worth, row, np.where(np.isnan(table), 0.0, table) * weight)
     np.add.at(often, row, weight)
     with np.errstate(invalid="ignore"):

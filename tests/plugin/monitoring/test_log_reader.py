@@ -366,3 +366,19 @@ def test_missions_without_an_end_are_counted_separately(tmp_path: Path) -> None:
     assert reading.readers[0].progress is not None
     assert reading.readers[0].progress.unfinished == 1
     assert reading.rewards == sums(some[1:])
+
+
+def test_a_record_of_no_mission_is_not_read_again(tmp_path: Path) -> None:
+    """Between two missions is a part of a third one, whose beginning was lost."""
+    first, second = ([*records(one, pieces=3)] for one in walks(2, 2))
+    done = MAGIC + b"".join(map(encoded, [start(), *first, first[1]]))
+    path = tmp_path / "m.log"
+    path.write_bytes(done + b"".join(map(encoded, second[:2])))
+    reading = Reading(path)
+    assert reading.read() == 1
+    progress = reading.readers[0].progress
+    assert progress is not None
+    assert (progress.offset, progress.missions, progress.unfinished) == (len(done), 1, 0)
+    with path.open("ab") as file:
+        file.write(b"".join(map(encoded, second[2:])))
+    assert reading.read() == 2
