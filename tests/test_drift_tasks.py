@@ -39,6 +39,7 @@ JUDGING = (
     "drift_judging_22",
     "drift_judging_23",
     "drift_judging_24",
+    "drift_judging_25",
     "drift_structure",
 )
 TASKS = sorted(
@@ -344,6 +345,14 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_25": [
+        "helper",
+        "one constant",
+        "one constant",
+        "one constant",
+        "permanent",
+        "two constants",
+    ],
 }
 
 
@@ -406,6 +415,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_22",
         "drift_judging_23",
         "drift_judging_24",
+        "drift_judging_25",
     ],
 )
 def test_hand_repairs_restore_the_reward(folder: str) -> None:
