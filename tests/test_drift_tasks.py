@@ -350,7 +350,13 @@ KINDS = {  # kinds of defects in the tasks of each set
         "one constant",
         "one constant",
         "one constant",
+        "one constant",
+        "one constant",
         "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "structure",
         "two constants",
     ],
 }

@@ -99,7 +99,9 @@ class Gearbox(object):
         self.dash_pub.publish("%d%s" % (self.gear, "" if self.state == "hold" else "*"))
 
     def log(self, event):
-        rospy.loginfo("gear %d, %d shifts, incline %.1f %%", self.gear, self.shifts, 100.0 * self.incline.mean)
+        rospy.loginfo(
+            "gear %d, %d shifts, incline %.1f %%", self.gear, self.shifts, 100.0 * self.incline.mean
+        )
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ state = {
     "tension_faults": 0,
     "winding": False,
     "layers": 0,
+    "outbound": True,
 }
 
 
@@ -90,6 +91,7 @@ class Loop(object):
         speed = 0.0
         if state["winding"] and state["carriage"] is not None:
             target, direction = place()
+            state["outbound"] = direction > 0
             if state["layers"] >= params["layers"] or state["tension_faults"] > 20:
                 state["winding"] = False
                 self.stop_pub.publish(True)
@@ -103,6 +105,7 @@ class Loop(object):
     def show(self, event):
         self.layer_pub.publish(state["layers"])
         self.rate_pub.publish(state["rate"])
+        rospy.logdebug("layer %d, %s" % (state["layers"], "out" if state["outbound"] else "back"))
 
 
 def main():

@@ -1,6 +1,6 @@
 """A machine winds pressure vessels. Thin ones turn four times as fast, and the carriage falls behind their pattern.
 
-Each step between the domes earns for fibres in their place, less beside it; a carriage that stays beside it fails.
+Each step earns, less for fibres beside their place; a carriage that stays beside it fails.
 """
 
 import math
@@ -68,10 +68,12 @@ class Machine:
         if self.started:
             self.turns += DT * self.rate
         wanted = self.wanted()
-        if self.time > 3.0 and 0.12 < wanted < LENGTH - 0.12:
-            off = abs(self.at - wanted)
-            self.gained = 0.025 - 0.8 * max(0.0, off - 0.015)
-            self.beside = self.beside + DT if off > 0.03 else 0.0
+        if self.time > 3.0:
+            self.gained = 0.025
+            if 0.14 < wanted < LENGTH - 0.14:  # not on the domes
+                off = abs(self.at - wanted)
+                self.gained -= 0.8 * max(0.0, off - 0.018)
+                self.beside = self.beside + DT if off > 0.03 else 0.0
         if self.beside > 0.8:
             self.failure = "fibres lie beside the pattern"
         elif stop:
@@ -91,7 +93,7 @@ class Machine:
     min_success=0.97,
 )
 def test_winds(tarl, tarl_drift):
-    """Wind for twenty seconds: reward for each step with fibres in place, -4 for a pattern that is lost."""
+    """Wind for twenty seconds: reward for each step, less for fibres beside their place, -4 for a pattern that is lost."""
     machine = Machine(tarl.rng("machine"), **(tarl_drift or THICK))
     tarl.start("filament_winder.py", launch="winder.launch")
     while not machine.done:

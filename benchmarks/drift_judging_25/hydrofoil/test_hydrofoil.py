@@ -1,4 +1,4 @@
-"""A hydrofoil crosses a bay. In spray its altimeter gets noisy, its flaps chatter, and the oil that moves them heats up.
+"""A hydrofoil crosses a bay. In spray its altimeter is noisy, its flaps chatter, and their oil heats up.
 
 Each step earns for a steady height; a boat that crashes, or oil that is too hot, ends the crossing.
 """

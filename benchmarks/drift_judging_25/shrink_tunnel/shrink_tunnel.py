@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shrink tunnel of a packing line: holds the air at its temperature, and carries packs of bottles through at one speed."""
+"""Shrink tunnel of a packing line: holds the temperature of its air, and carries packs through at one speed."""
 
 import rclpy
 from rclpy.node import Node

@@ -1,6 +1,6 @@
 """Guests ride a water slide. When the pump gives less water, they run out of speed and creep through the run-out.
 
-Each guest who leaves the slide earns, seconds cost a little, and a guest who slides into the one before, still in the run-out, ends the day.
+Each guest who leaves the slide earns, seconds cost a little, and a guest who slides into the one before ends the day.
 """
 
 import pytest

@@ -96,7 +96,9 @@ class Slide(object):
     def diagnose(self, event):
         level = DiagnosticStatus.ERROR if self.blocked else DiagnosticStatus.OK
         values = [KeyValue("riders", str(self.total)), KeyValue("flow", str(self.flow))]
-        status = DiagnosticStatus(level=level, name=self.settings["name"], message=self.blocked, values=values)
+        status = DiagnosticStatus(
+            level=level, name=self.settings["name"], message=self.blocked, values=values
+        )
         self.diagnostics.publish(DiagnosticArray(status=[status]))
 
 
