@@ -93,7 +93,7 @@ class Machine:
     min_success=0.97,
 )
 def test_winds(tarl, tarl_drift):
-    """Wind for twenty seconds: reward for each step, less for fibres beside their place, -4 for a pattern that is lost."""
+    """Wind for twenty seconds: reward for each step, less for fibres beside their place, -4 for a lost pattern."""
     machine = Machine(tarl.rng("machine"), **(tarl_drift or THICK))
     tarl.start("filament_winder.py", launch="winder.launch")
     while not machine.done:

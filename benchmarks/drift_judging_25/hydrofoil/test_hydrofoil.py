@@ -64,7 +64,7 @@ class Bay:
             self.failure = "hull crashes into the water"
         elif self.height > 1.15:
             self.failure = "foil leaves the water"
-        elif self.oil > 14.5:
+        elif self.oil > 15.0:
             self.failure = "oil is too hot"
         if self.failure:
             self.gained -= 4.0

@@ -50,8 +50,8 @@ class Line:
 
     def judge(self, film):
         """Judge a pack by the temperature that its film had."""
-        self.gained += 0.7 - 0.05 * max(0.0, abs(film - 118.5) - 8.5)
-        if not 107.0 < film < 131.0:
+        self.gained += 0.7 - 0.05 * max(0.0, abs(film - 118.5) - 10.5)
+        if not 106.0 < film < 132.0:
             self.bad += 1
         self.count += 1
         self.exit = 3
