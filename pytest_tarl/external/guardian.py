@@ -26,9 +26,9 @@ from pytest_tarl.external.link import Link
 from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
-LOOK = 0.05  # time between two checks of the ROS graph in the first CALM seconds (s); afterwards it is 1 s
+LOOK = 0.05  # time between two checks of the ROS graph in the first CALM seconds (s); later 1 s
 CALM = 5.0  # time during which the ROS graph is checked every LOOK seconds (s)
-LAST = 20.0  # if the middleware hangs, the simulator is killed this long after the end of the test (s)
+LAST = 20.0  # time after the end of the test when a hanging simulator is killed (s)
 
 
 class Guardian:

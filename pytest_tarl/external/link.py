@@ -19,12 +19,12 @@ DEPTH = 1000
 # because it may have handled another event.
 IDLE = 3
 UNKNOWN = (
-    # the name that rclpy gives a node as long as only a publisher or subscription of it is known
+    # rclpy's name for a node of which only an endpoint is known
     "_NODE_NAME_UNKNOWN_"
 )
-# maximum time until the name of a node is known (s); a program that is not a ROS 2 node never gets a name
+# maximum time until a node's name is known (s); other programs never get a name
 NAMING = 10.0
-# maximum time for a node to answer a parameter request (s); a node that takes longer is not asked again
+# maximum time for a node to answer a parameter request (s); slower nodes are not asked again
 ASKING = 10.0
 
 Say = Callable[[dict[str, Any]], None]

@@ -151,7 +151,7 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            # rospy warns if there is no queue, but with a queue, a later service call could overtake the message
+            # rospy warns without a queue, but with one, a service call could overtake the message
             warnings.simplefilter("ignore", SyntaxWarning)
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 

@@ -22,7 +22,7 @@ from pytest_tarl.ros.messages.snapshot import snapshot, type_name
 if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
-SETTLED = 0.3  # a simulator counts as started if the ROS graph has not changed for this time (s of real time)
+SETTLED = 0.3  # a simulator has started if the ROS graph did not change for this time (s of real time)
 
 
 class Simulator:
@@ -50,9 +50,9 @@ class Simulator:
         # whether the running simulator was ready once; the graph does not tell, because a simulator that ends also
         # leaves the graph, and this event may arrive first
         self._was_ready = False
-        # whether the simulator can be used again, because its last step ended without an error
+        # whether the last step ended without an error, so the simulator can be used again
         self._usable = False
-        # whether arriving events come from the simulator of this episode and not from an earlier one
+        # whether arriving events come from the simulator of this episode
         self._current = False
 
     @property
@@ -88,7 +88,7 @@ class Simulator:
         if self.setup.step is not None:
             self._stepped(self.setup.step)
         else:
-            # the simulator is already past this time, because it keeps running while the test does something else
+            # the running simulator is already past this time
             if self._target <= self._time:
                 self._target = self._time + nanoseconds(dt)
             self._deliver(self._released())

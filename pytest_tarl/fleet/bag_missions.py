@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    # the bag is truncated; no mission ID can be computed from it, because the complete bag has another ID
+    # a truncated bag has no mission ID, because the complete bag would have another one
     if bag.notes:
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore the index of the "

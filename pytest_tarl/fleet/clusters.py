@@ -23,7 +23,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
 
-# maximum number of robots to compare; if more robots were reported, those with the most evidence are compared
+# maximum number of robots to compare; those with the most evidence are chosen
 MOST = 300
 
 
@@ -66,7 +66,7 @@ def of(
 
     `recorded`, of shape (cells,), is the variance of the mean residual of the recording in each cell.
     """
-    # sort the robots, because the last bits of sums depend on the order
+    # sorted, because the order affects the last bits of sums
     ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))

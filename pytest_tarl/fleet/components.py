@@ -30,7 +30,7 @@ REPLICATES = 200
 FEWEST = 30  # minimum number of robots for which an interval is given
 RANDOM = 2  # number of random components: between robots, and residual (between missions)
 CONFOUNDED = (
-    # a contrast cannot be estimated if a larger share of it than this lies outside the row space of the design
+    # maximum share of an estimable contrast outside the row space of the design
     1e-6
 )
 SINGULAR = 1e-9  # eigenvalues below this share of the largest count as 0
@@ -60,14 +60,14 @@ class Component:
     low: float
     high: float
     levels: int
-    # effect of each level, relative to the mean over missions; empty for the components of robots and residuals
+    # effect of each level, relative to the mean over missions; empty for robots and residuals
     effects: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class _Fit:
     variances: Floats  # variance of each factor, of robots and of residuals
-    noise: Floats  # the part of each entry of `variances` that is due to estimation errors
+    noise: Floats  # share of each entry of `variances` that is estimation error
     effects: Floats  # effects of all levels of all factors
 
 

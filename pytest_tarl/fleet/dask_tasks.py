@@ -26,7 +26,7 @@ from pytest_tarl.extras import install_command
 
 REACHED = 10  # maximum time to wait for the scheduler (s)
 RETRIES = 3  # maximum number of retries of a task whose worker dies
-AHEAD = 2  # maximum number of waiting and running tasks per thread of a cluster; bounds the memory
+AHEAD = 2  # maximum number of waiting and running tasks per cluster thread; bounds the memory
 WINDOW = 8  # number of tasks passed to Dask at a time, per thread of this process
 
 Result = TypeVar("Result")

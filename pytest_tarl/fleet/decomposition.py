@@ -13,7 +13,7 @@ from pytest_tarl.seeds import generator
 
 CONFIDENCE = 0.95
 PORTION = 200_000  # number of missions read at a time
-MONTHS = 3  # months are the seasons if missions span at least this number of months; otherwise, weeks are
+MONTHS = 3  # minimum number of months for months as seasons; with fewer months, weeks are the seasons
 
 CODES = """
     CREATE OR REPLACE TEMP TABLE of_{name} AS

@@ -27,7 +27,7 @@ from pytest_tarl.report.sensor_regions import Vocabulary
 from pytest_tarl.sensors import Cell
 from tarl_lint.files import write_atomically
 
-# maximum number of groups on the map; groups that differ are chosen first, then those with the lowest reward
+# maximum number of groups on the map; differing groups come first, then those with the lowest reward
 MOST_GROUPS = 2000
 MOST_CELLS = 12  # maximum number of cells listed for the fleet, and for each robot
 NAMES = 30  # maximum number of links to the robots of a cluster

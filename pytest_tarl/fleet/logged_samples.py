@@ -19,7 +19,7 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.logged import Mission, missions, trace
 
-# size in bytes of a mission ID; logged missions have no seed, so the ID is stored in the seed field
+# size of a mission ID (bytes); it is stored in the field of the seed
 BYTES = 8
 
 

@@ -58,7 +58,7 @@ def _is_log(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
     except OSError:
-        # an unreadable file is treated as a recording, whose reading then raises an error with the reason
+        # an unreadable file is read as a recording, which raises an error with the reason
         return False
 
 

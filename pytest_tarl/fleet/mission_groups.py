@@ -24,7 +24,7 @@ from pytest_tarl.model import Bound, Region, Verdict
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell, Sensor
 
-MOST = 1000  # maximum number of missions of a group that are compared; bounds use all missions
+MOST = 1000  # maximum number of compared missions of a group; bounds use all missions
 FEWEST = 2  # minimum number of missions for a verdict
 
 
@@ -49,7 +49,7 @@ class Group:
     reward: float  # mean total reward of the missions
     success: Bound
     mean: Bound
-    # number of totals outside the declared range; if it is not 0, the bound of the mean is only approximate
+    # number of totals outside the declared range; if any, the bound of the mean is approximate
     outside: int
     compared: int
     verdict: Verdict | None

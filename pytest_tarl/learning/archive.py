@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # number of unpacked bytes that are allowed for every file, even a small one
-RATIO = 100  # number of further unpacked bytes allowed per byte of the file; recordings need 2 to 20
-# bytes of memory per unpacked byte while a recording is read (benchmarks/limits.py, case recording)
+FREE = 256_000_000  # number of unpacked bytes allowed for every file
+RATIO = 100  # number of further unpacked bytes allowed per byte of a file; recordings need 2 to 20
+# memory per unpacked byte while a recording is read (bytes; benchmarks/limits.py, case recording)
 NEEDED = 9
 KINDS = "biuf"  # numpy kinds: booleans, integers and floats
 ENDING = ".npy"

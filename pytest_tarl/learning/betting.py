@@ -16,14 +16,14 @@ from statistics import fmean, variance
 
 from pytest_tarl.learning.bounds import mean_of
 
-# shares of their wealth that the bold bet and the careful bet may lose in the worst possible episode
+# largest shares of their wealth that the bold and the careful bet may lose in one episode
 BOLD, CAREFUL = 0.95, 0.5
 # Share of the initial wealth that the test gives to the bold bet. In a simulation of 200 correct repairs that lose 3 %
 # of the reward and never fail, the test accepts 197 with 0.9 and 93 with 0.5. If correct repairs rarely fail, the test
 # accepts equally many repairs with either value.
 OF_BOLD = 0.9
 DOUBT = 1.5  # safety factor for the variance, which is estimated from few episodes
-CERTAIN = 0.005  # approximate probability that the test ends early although the mean is above the limit
+CERTAIN = 0.005  # approximate probability of an early end although the mean is above the limit
 
 
 @dataclass(frozen=True, slots=True)

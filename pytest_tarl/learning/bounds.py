@@ -39,7 +39,7 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
 
 POWER = 0.8  # probability of detecting the smallest detectable loss
-STAKE = 0.75  # maximum share of the wealth that one bet may lose; the truncation c of Waudby-Smith & Ramdas
+STAKE = 0.75  # maximum share of the wealth lost in one bet; the truncation c of Waudby-Smith & Ramdas
 
 
 class Range(NamedTuple):

@@ -26,7 +26,7 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import Decreased, LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-# a cell is in the region if its difference is at least this share of the largest significant one
+# minimum difference of a cell in the region, as a share of the largest significant difference
 MATERIAL = 0.1
 PASS_RATE_LOSS = 0.05  # tolerated decrease of the share of successful missions
 

@@ -18,7 +18,7 @@ from pytest_tarl.free_memory import available
 from pytest_tarl.learning.tables import Sample
 
 PEAK = 5  # peak memory per byte of columns, in bytes (benchmarks/limits.py, case recording)
-# number of episodes before the first estimate; a new estimate follows whenever the number has doubled
+# number of episodes before the first estimate; later estimates come at each doubling
 FIRST = 3
 STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9

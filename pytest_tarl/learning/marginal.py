@@ -11,9 +11,9 @@ import numpy as np
 from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-# two worlds count as having no cells in common if at most this share of the deployed steps lies in recorded cells
+# maximum share of deployed steps in recorded cells for worlds without common cells
 FEW = 0.05
-ENOUGH = 0.5  # sensors are left out until at least this share of the steps is in recorded cells
+ENOUGH = 0.5  # sensors are left out until this share of the steps is in recorded cells
 
 
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:

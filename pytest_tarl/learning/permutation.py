@@ -20,7 +20,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-# if a p-value is at least this large after PERMUTATIONS shuffles, further shuffles are skipped
+# p-values from this value on get no further shuffles
 SETTLED = 0.2
 AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
@@ -179,7 +179,7 @@ def _smallest(draws: Floats, first: int) -> Floats:
     """Mark the smallest numbers of each row, `first` of them, with 1, and all others with 0; keep the shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    # rows in which several numbers equal the limit, so that fewer than `first` numbers are below it
+    # rows with several numbers at the limit, so fewer than `first` numbers are below it
     tied = np.flatnonzero(picked.sum(axis=1) != first)
     for row in tied.tolist():
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

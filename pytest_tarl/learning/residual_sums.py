@@ -13,7 +13,7 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # minimum number of visits to a novel cell (a cell that the fit does not know)
+NOVEL_VISITS = 3  # minimum number of visits to a cell that the fit does not know
 NOVEL_EPISODES = 2  # minimum number of episodes that visit a novel cell
 
 
@@ -29,7 +29,7 @@ class Evidence:
     move: Floats  # shape (episodes, cells), like the next two fields
     reward: Floats
     novel: Floats
-    # largest rounding error of each entry of `move` and `reward`; an entry below its error is set to 0
+    # largest rounding error of each entry of `move` and `reward`; smaller entries are set to 0
     move_error: Floats
     reward_error: Floats
     slabs: tuple[Ints, ...]  # row numbers of the cells in each slab

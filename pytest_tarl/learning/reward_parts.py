@@ -14,7 +14,7 @@ from pytest_tarl.learning.permutation import max_statistic
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-MATERIAL = 0.1  # a cell is reported if its loss is at least this share of the largest loss of any cell
+MATERIAL = 0.1  # minimum loss of a reported cell, as a share of the largest loss of any cell
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:

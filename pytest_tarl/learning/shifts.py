@@ -19,7 +19,7 @@ from pytest_tarl.seeds import generator
 
 COARSE = 30  # number of bisection steps; p-values from shuffles are too coarse to need more
 LEAST_PERMUTATIONS = 999
-# expected number of shuffles with a more extreme statistic than the observed one, at the requested risk
+# expected number of more extreme shuffles at the requested risk
 PER_RISK = 20
 MOST_PERMUTATIONS = 40_000
 AT_ONCE = 2_000  # number of shuffles drawn together; takes a few MB
@@ -31,7 +31,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     The inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
     """
     difference = float(offline.mean() - online.mean())
-    # if one group is shifted by more than this value, the two groups do not overlap
+    # the groups do not overlap if one is shifted by more than this value
     unit = float(np.ptp(offline) + np.ptp(online))
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from pytest_tarl.learning.sequential import Look, planned, spending
 
-MOST = 1.5  # maximum number of episodes of a comparison, as a multiple of an even share
+MOST = 1.5  # maximum episodes of a comparison, in even shares of the total
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,8 @@ from pytest_tarl.sensors import Cell
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
-CANCELLED = 1e-13  # a sum below this share of the sum of magnitudes counts as a rounding error
-# if there are at most this many possible pairs per row, pairs are counted in a table; otherwise, they are sorted
+CANCELLED = 1e-13  # a sum below this share of its magnitudes is a rounding error
+# maximum number of possible pairs per row for counting in a table; more pairs are sorted
 DENSE = 4
 
 

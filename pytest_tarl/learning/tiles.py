@@ -17,7 +17,7 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSam
 from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
 from pytest_tarl.sensors import Cell, Sensor
 
-# this multiple of the mean number of visits is added to the diagonal, because tilings leave some weights undetermined
+# ridge added to the diagonal, in mean numbers of visits; tilings leave some weights undetermined
 RIDGE = 1e-6
 DENSE = 1500  # maximum number of weights for a direct solution
 

@@ -16,7 +16,7 @@ from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
 DENSE = 150  # maximum number of states for a direct solution
-PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest utility
+PRECISE = 1e-12  # sweeps end when all utilities change by at most this share of the largest utility
 STEPS = 300  # maximum number of biconjugate gradient steps, after which sweeps improve the solution
 
 

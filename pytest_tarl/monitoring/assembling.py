@@ -59,7 +59,7 @@ class Assembly:
 
     expected: Expected
     path: Path
-    # the progress when the log was opened; its `refused` says why later missions are not counted
+    # the progress when the log was opened; `refused` in it says why later missions are not counted
     begun: Progress
     place: int
     missions: int = 0

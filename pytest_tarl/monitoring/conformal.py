@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-# number of bins beyond the fitted scores at each end; each bin is twice as wide as its inner neighbour
+# number of bins beyond the fitted scores at each end; each is twice as wide as the one before
 TAIL = 8
 TOGETHER = 64  # number of missions ranked together; a multiple of 8 below 256, see `_counted`
-CLOSE = 1e-4  # values that differ by less than this share of a score's unit count as equal
+CLOSE = 1e-4  # values within this share of a score's unit count as equal
 
 
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:

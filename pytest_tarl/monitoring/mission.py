@@ -45,7 +45,7 @@ class Table:
     new: Sequence[Cell | None]  # None for known cells; empty if all are known
 
 
-# the steps of a mission as stored in the log: their cells as little-endian int32, their rewards as float64
+# the steps of a mission in the log: cells as little-endian int32, rewards as float64
 Steps = tuple[Table, bytes, bytes]
 
 

@@ -53,7 +53,7 @@ class Scale:
     """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    # whether the model was fitted for a cell; the last entry stands for all cells that the scale lacks, and is False
+    # whether the model was fitted for a cell; the last entry (False) stands for all other cells
     known: NDArray[np.bool_]
     model: Model
     edges: Floats
@@ -84,7 +84,7 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
     wide = replace(
         sample, cells=(*sample.cells, ())
-    )  # with the additional cell, the arrays have the same layout as those of new missions, so sums are rounded equally
+    )  # the additional cell gives the layout of new missions, so sums are rounded equally
     values = _values(bare, wide)
     units = _units(chain, int(fit.sum()), count)
     found = [

@@ -13,9 +13,9 @@ from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
-# indices of the bets on low ranks and of those on high ranks; the other bets of conformal.factors are on both extremes
+# indices of the bets on low and on high ranks; other bets are on both extremes
 LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)
-FEWEST_NEW = 2  # a new cell is named in the status if at least this number of missions visited it
+FEWEST_NEW = 2  # minimum number of missions in a new cell that the status names
 
 
 @dataclass(frozen=True)

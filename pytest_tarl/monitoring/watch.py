@@ -24,7 +24,7 @@ from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
 
-SAVED = 1.0  # time between two saves of the state while there are more missions to read (s)
+SAVED = 1.0  # time between two saves of the state while missions are left to read (s)
 
 
 @dataclass

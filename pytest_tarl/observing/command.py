@@ -133,7 +133,7 @@ def _check(order: Order) -> None:
 
 def _sites(order: Order) -> Plan:
     paths = [path.resolve() for path in (order.node, *order.modules)]
-    # analyse with the project's settings, so that the log has the same statements as the recording
+    # the project's settings give the log the same statements as the recording
     analysis = analyse(paths, root=Path.cwd(), with_settings=True)
     if not analysis.flows:
         raise AnalysisError(f"No flow from a subscription to a publish call was found in {order.node}.")

@@ -16,7 +16,7 @@ from pytest_tarl.sensors import Sensor
 Listener = Callable[[Any], None]
 NUMBER = "std_msgs/msg/Float64"
 WORD = "std_msgs/msg/String"
-DEPTH = 1000  # number of messages queued per topic while the node is busy; rclpy drops the oldest from a full queue
+DEPTH = 1000  # number of queued messages per topic; rclpy drops the oldest from a full queue
 
 
 @dataclass(frozen=True)

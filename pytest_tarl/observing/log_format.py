@@ -24,7 +24,7 @@ from pytest_tarl.framed import framed, next_payload
 
 FORMAT = 1
 MAGIC = b"tarl log 1\n"
-# maximum size of a record (bytes); if a record's length field exceeds this, the log is damaged
+# maximum size of a record (bytes); a larger length means a damaged log
 LARGEST = 1 << 26
 
 Record = dict[str, Any]

@@ -66,7 +66,7 @@ class Observer:
         self._bins: list[int | None] = [None] * len(self.sensors)
         self._values: list[Any] = [None] * len(self.sensors)
         self._numbers: dict[str, float] = {}  # values of the signals received in this mission
-        # earlier values of those signals that have had no message in this mission
+        # earlier values of signals without a message in this mission
         self._before: dict[str, float] = {}
         self._readings: list[Any] = []  # values of all sensors at each step, one step after another
         self._active = monotonic()
@@ -212,4 +212,4 @@ def _plain(value: Any) -> Any:
     try:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
-        return None  # the value is not a number; `told` reports this error, and the cell stays unknown
+        return None  # the value is no number; `told` reports it, and the cell stays unknown

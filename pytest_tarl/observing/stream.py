@@ -152,7 +152,7 @@ def _cut(entries: list[Any]) -> list[Any]:
     """Remove complete events from the front; each operation is atomic, since the owning thread may append meanwhile."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
-        count -= 1  # the last entry is a site without its value, which the other thread has not appended yet
+        count -= 1  # the last entry is a site whose value the other thread has not appended yet
     taken = entries[:count]
     del entries[:count]
     return taken

@@ -22,7 +22,7 @@ from tarl_lint.model import SiteId
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
-# public attributes of rclpy.node.Node; a new attribute with one of these names would break the node
+# public attributes of rclpy.node.Node, which a new attribute must not replace
 _NODE_ATTRIBUTES = {
     "client", "clients", "context", "default_callback_group", "executor", "guards", "handle", "publishers", "services",
     "subscriptions", "timers", "waitables",

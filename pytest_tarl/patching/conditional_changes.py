@@ -11,8 +11,8 @@ from pytest_tarl.patching.document import Document, Edit, parse_expression
 from pytest_tarl.patching.expression_texts import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
-LONGEST_COPY = 3  # a statement of at most this number of lines may be written twice, under `if` and `else`
-# maximum number of characters of a condition inside an expression; longer conditions are assigned to a name
+LONGEST_COPY = 3  # maximum number of lines of a statement that is written twice, under `if` and `else`
+# maximum length of a condition inside an expression; longer conditions get a name
 LONGEST_CONDITION = 48
 _ARITHMETIC = {
     "abs",

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
-# name of the rclpy method that declares several parameters; its arguments are a namespace and (name, default) pairs
+# rclpy method that declares several parameters: a namespace and (name, default) pairs
 SEVERAL = "declare_parameters"
 _CONVERSIONS = ("int", "float", "round")
-ENTRY = "get"  # name of the method that reads an entry of a parameter if the parameter is a mapping
+ENTRY = "get"  # method that reads an entry of a parameter that is a mapping
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
 ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")

@@ -86,7 +86,7 @@ def _satisfied(conjunct: Conjunct, value: Constant) -> bool:
     if value is None:
         return False
     number = float(value)
-    # the interval of an angle wraps around the end of the range, such as an interval from 3.0 to -3.0
+    # the interval crosses the end of the angle's range, such as from 3.0 to -3.0
     if conjunct.low > conjunct.high:
         return number >= conjunct.low or number <= conjunct.high
     return conjunct.low <= number <= conjunct.high

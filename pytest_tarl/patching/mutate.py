@@ -33,7 +33,7 @@ class Mutation:
     operand: Operand
     value: float | int | bool
     place: Place | None = None
-    # set for a structural repair: then the operand is an expression, and the value is a factor
+    # set for a structural repair, whose operand is an expression and whose value is a factor
     form: Form | None = None
     # the scale on which the search moves the operand
     chart: Chart | None = field(default=None, compare=False)

@@ -23,7 +23,7 @@ BASE = "paths are relative to"  # header key of the patch's base folder
 SEAL = "digest of all other lines"  # header key of the hash that reveals edited or damaged patches
 TITLE = "Repair by tarl "
 PARTIAL = ".partial"  # suffix of files with a change that was not accepted as a repair
-QUOTE = b"| "  # prefix of each line of a PARTIAL file, so that no tool applies the change
+QUOTE = b"| "  # prefix of each line of a PARTIAL file; it prevents other tools from applying the change
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
@@ -110,7 +110,7 @@ def apply_command(patch: Path, cwd: Path) -> str:
     base = (patch.resolve().parents[2] / _stated_base(text)).resolve()
     if shutil.which("git") is None:
         return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
-    # if git runs in a subfolder, it silently skips files outside the subfolder and exits with 0
+    # git in a subfolder silently skips files outside the subfolder and exits with 0
     if base == here:
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])

@@ -23,7 +23,7 @@ _HEADER = (  # lines of a file after `diff --git`; git appends a tab to names wi
     re.compile(rb"\+\+\+ b/([^\t\n]+)\t?\n"),
 )
 
-# folders that no patch may change: git runs files in its folder, and TARL loads compiled nodes from its cache
+# folders that no patch may change, because git and TARL run files in them
 CLOSED = frozenset({".git", ".tarl"})
 
 

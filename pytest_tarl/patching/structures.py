@@ -25,7 +25,7 @@ class Form:
     template: Template
     parameter: str = ""
     defaults: tuple[tuple[str, float], ...] = ()
-    # the other expression of a pair to swap, or the same expression for another axis, which changes in the same way
+    # the other expression of a swapped pair, or the same expression for another axis
     partner: Span | None = None
     sensor: Sensor | None = None
     field: str = ""  # for a published message: the field to change, such as `linear.x`
@@ -75,7 +75,7 @@ def form_edits(
     found = _written(_Place(source, statement, node, form, condition), fill)
     if (
         keeper is not None
-    ):  # edits that declare state come first, because `global` has to precede the lines that use the variable
+    ):  # declarations of state come first, because `global` has to precede the use
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 

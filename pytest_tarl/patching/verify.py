@@ -38,7 +38,7 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
     ]
     kept = (text for _, text in _pieces(after, after))
     for piece in wanted:
-        # `in` advances the iterator up to the piece that it finds, so the pieces must occur in the same order
+        # `in` advances the iterator, so the pieces must occur in the same order
         if piece not in kept:
             raise RepairError(f"The repair of {path} would remove `{piece}`, so no patch is written.")
 

@@ -19,7 +19,7 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # maximum number of rows; each row is for one value of the sensor that splits the figure
+MOST_ROWS = 6  # maximum number of rows, one per value of the sensor that splits the figure
 QUIET = 0.25  # minimum range of the scale for differences, as a share of the range of utilities
 DIGITS = 5  # number of significant digits of numbers on the page
 

@@ -44,7 +44,7 @@ ENDS: dict[Reason, str] = {
     "breaks other missions": "dropped, missions that lost nothing get worse",
 }
 
-# a wider tolerance is suggested only if the rejected candidate restored at least this share of the loss
+# minimum restored share of the loss for suggesting a wider tolerance
 NEARLY = 0.8
 # suggested tolerance, as a multiple of the remaining loss; it is above 1, so that a test can show that the loss is
 # below it

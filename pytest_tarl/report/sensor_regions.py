@@ -11,7 +11,7 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-# when bins are merged, this number of orders of the sensors is tried; for four sensors, these are all orders
+# number of sensor orders tried when bins are merged; all orders of four sensors
 ORDERS = 24
 NAMED = 3  # maximum number of places named before "and 2 more"
 

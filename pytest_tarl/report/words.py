@@ -12,7 +12,7 @@ from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.report.sensor_regions import Vocabulary
 
 SIGNIFICANT = 0.05  # a loss is reported only if its p-value is at most this
-NEGLIGIBLE = 0.01  # a part of the reward is reported only if it has at least this share of the total loss
+NEGLIGIBLE = 0.01  # minimum share of the total loss for reporting a part of the reward
 SHORTEST = 16  # minimum number of characters of a code line that are shown
 
 

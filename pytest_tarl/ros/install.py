@@ -55,7 +55,7 @@ class StandinFinder:
         """Find a stand-in; return None to leave the name to other finders."""
         root = name.partition(".")[0]
         if root == "genpy" and _has_genpy():
-            # if genpy is installed, message classes may be installed, too, and these need the real genpy
+            # message classes may be installed with genpy; these need the real genpy
             return None
         if name in STANDINS and root not in STANDALONE:
             return self._spec(name)

@@ -177,7 +177,7 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
     _check_arguments(launch, [name for name, _ in arguments])
     nodes = [one for one in launch.nodes if one.kind != "test"]
     if not nodes:
-        # a part of the file that may start nodes, but could not be evaluated, explains best why there are none
+        # a part of the file that could not be evaluated is the best explanation
         reasons = [one.reason for one in sorted(launch.problems, key=lambda one: not one.hides)]
         why = f": {reasons[0]}" if reasons else " with these arguments"
         raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")

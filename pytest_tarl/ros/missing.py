@@ -20,7 +20,7 @@ _STAND_IN: Final = (
     "give the node a small stand-in for it in your test (monkeypatch the call, or put a module of that name into "
     "sys.modules), or drive the node only through the parts that exist."
 )
-# minimum similarity of a suggested name; with this value, one letter in five to ten may differ
+# minimum similarity of a suggested name; one letter in five to ten may differ
 _ALIKE: Final = 0.8
 _IMPORT_FROM: Final = opmap["IMPORT_FROM"]
 _REPLACE: Final = "put a module of that name into sys.modules in your test"

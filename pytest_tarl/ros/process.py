@@ -21,7 +21,7 @@ Part = TypeVar("Part")
 
 _PATIENCE = 1_000  # a task ignores the shutdown if more than this number of its waits return at once
 _LONGEST = 100  # maximum length of a node's last words in a message
-_ROUNDS = 5  # number of rounds in which the tasks of an ending process may return before they are killed
+_ROUNDS = 5  # maximum number of rounds for the tasks of an ending process; then they are killed
 
 
 class Network:
@@ -44,7 +44,7 @@ class Network:
         self.services = ServiceDirectory(self.scheduler)
         self.bus = Bus(self.scheduler, run, self.services)
         self.processes: list[Process] = []
-        # numbers that nodes read as parameters, by absolute name; the keys of nested parameters are joined by slashes
+        # absolute name of a parameter → its number, if nodes read it
         self.parameters_read: dict[str, bool | int | float] = {}
         self._parts: dict[Any, Any] = {}
 
@@ -86,8 +86,8 @@ class Process:
         self.launched = NOTHING  # parameters from a launch file
         self.unset: dict[
             str, None
-        ] = {}  # parameters without a value that the node asked for, under the names that the node used
-        self.label = name  # name shown in messages; as soon as the node has a name, this is the node's name
+        ] = {}  # missing parameters that the node asked for, by the names it used
+        self.label = name  # name shown in messages; the node's name once the node has one
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
         self._at_end: list[Callable[[], None]] = []

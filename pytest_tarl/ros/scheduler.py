@@ -25,7 +25,7 @@ from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
 NO_HOOKS: tuple[Any, ...] = (None, None)
-PATIENCE = 500  # number of polls at one instant after which a task counts as polling, see polling.py
+PATIENCE = 500  # number of polls at one instant that make a task a polling task, see polling.py
 
 
 class Program(Protocol):

@@ -12,12 +12,12 @@ from contextlib import suppress
 from pytest_tarl.held_interpreter import allow
 
 DEFAULT_LIMIT = 10.0  # limit of CPU time without progress of virtual time (s)
-# multiple of the limit after which a node that waits outside ROS, without CPU time, is stopped
+# a node that waits outside ROS without CPU time is stopped after this multiple of the limit
 _PATIENCE = 12
-_HOLD = 12  # multiple of the limit after which a node that holds the interpreter lock is stopped
+_HOLD = 12  # a node that holds the interpreter lock is stopped after this multiple of the limit
 _INTERVAL = 0.1  # time between two checks (s)
 _IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
-# maximum number of rounds of a loop in which the interpreter should raise the sent exception; one round is enough
+# maximum number of loop rounds until a sent exception is raised; one is enough
 _MOST_JUMPS = 1000
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
@@ -39,14 +39,14 @@ class Watchdog:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._armed = False
-        self._moves = 0  # counter of progress; if two checks find the same count, there was no progress
+        self._moves = 0  # counter of progress; two equal counts mean no progress
         self._limit = DEFAULT_LIMIT
         self._target = 0
         self._clock = -1
         self._watching = False
         self._allowed = False  # whether the kernel's CPU timer runs as well
         self.fired = False
-        # whether the watchdog fired because of a wait outside ROS, not because of computing
+        # whether the watchdog fired because of a wait outside ROS
         self.hung = False
 
     def arm(self, limit: float) -> None:
@@ -106,7 +106,7 @@ class Watchdog:
             if idle or moves != seen:
                 seen, looks, computed = moves, 0, self._computed()
                 continue
-            # count checks instead of measuring time, because a suspended process makes no checks
+            # count checks instead of time, because a suspended process makes no checks
             looks += 1
             worked = self._computed() - computed >= self._limit
             if worked or (looks * _INTERVAL >= self._limit * _PATIENCE and not _debugged(self._target)):

@@ -11,7 +11,7 @@ from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
 REACHED = 10  # maximum time to wait for a connection to the scheduler (s)
-RETRIES = 2  # maximum number of retries on another machine if an episode's machine is lost
+RETRIES = 2  # maximum number of retries after the loss of an episode's machine
 
 _pools: list[Pool] = []  # at most one pool per worker process of the cluster
 

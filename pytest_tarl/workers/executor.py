@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# plugins that a worker must not load: they write reports, cache results, debug, or start workers of their own
+# plugins that a worker must not load: they write reports, cache, debug or start workers
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,

@@ -13,9 +13,9 @@ from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Duration, Time, get_rostime
 from pytest_tarl.ros.rospy.timing import Timer as PeriodicTimer
 
-# time between two publications of all states (s), the same as with the parameter actionlib_status_frequency at 5
+# time between two publications of all states (s), as in actionlib by default
 _PERIOD: Final = 0.2
-# time for which the state of an ended goal is published (s), the same as with the default status_list_timeout
+# time for which the state of an ended goal is published (s), as in actionlib by default
 _KEPT: Final = 5.0
 _TOO_OLD: Final = (
     "This goal handle was canceled by the action server because its timestamp is before the timestamp of the last "

@@ -17,7 +17,7 @@ MESSAGES = ["ImageMarker", "InteractiveMarker", "InteractiveMarkerControl", "Int
 __all__ = ["InteractiveMarkerServer", *MESSAGES]  # nodes get the messages by `import *` from here
 
 Callbacks = dict[int, Callable[[Any], Any]]
-DEFAULT = 255  # type of event for the callback that gets all feedback without a callback of its own
+DEFAULT = 255  # event type of the default callback
 
 
 def __getattr__(name: str) -> Any:

@@ -116,7 +116,7 @@ def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     count = int(size.rstrip("]") or 0)
     if size == "]":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
-    # this is not possible, because each element takes at least one byte, except for an empty message
+    # each element takes at least one byte, unless its message is empty
     if count > len(data):
         raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
     if base in ("uint8", "char"):

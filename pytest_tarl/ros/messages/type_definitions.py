@@ -19,7 +19,7 @@ Shape = Literal["one", "array", "sequence"]
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {  # default values in common packages, which rosbags drops
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
-# dummy member that ROS 2 adds to types without fields; programs do not see it
+# dummy member of ROS 2 types without fields; programs do not see it
 _FILLER = "structure_needs_at_least_one_member"
 _PRIMITIVES = frozenset(
     [

@@ -63,7 +63,7 @@ class Executor:
         self._batch: deque[Entity] = deque()
         self._waiting: list[RunningTask] = []
         self._stirred = (
-            True  # whether an entity other than a timer may have become ready since the last check
+            True  # whether an entity may have become ready since the last check; timers do not count
         )
         self._is_shutdown = False
         self._active, self._limit = 0, 1  # number of running callbacks, and the largest number allowed
@@ -159,7 +159,7 @@ class Executor:
                 raise ExternalShutdownException
             if not self.context.initialised or self._is_shutdown or (future is not None and future.done()):
                 return None
-            # look for ready entities only once per round: an entity that its group refuses waits for the next round
+            # look for ready entities once per round; a refused entity waits for the next round
             looked = False
             while self._active < self._limit:
                 if not batch:

@@ -13,7 +13,7 @@ from pytest_tarl.ros.rospy.timing import Duration, get_time
 from pytest_tarl.ros.smach.state import State
 from pytest_tarl.ros.smach_ros import slots
 
-_LOOK = 0.1  # time between two checks of whether the state must end, by request or by its time limit (s)
+_LOOK = 0.1  # time between two checks whether the state must end (s)
 
 
 class SimpleActionState(State):

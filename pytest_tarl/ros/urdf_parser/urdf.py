@@ -66,9 +66,9 @@ class Robot:
     materials: list[Material] = field(default_factory=list)
     joint_map: dict[str, Joint] = field(default_factory=dict)
     link_map: dict[str, Link] = field(default_factory=dict)
-    # name of a link → names of the joint above it and of its parent link
+    # link name → names of its joint and its parent link
     parent_map: dict[str, tuple[str, str]] = field(default_factory=dict)
-    # name of a link → names of the joints and links below it
+    # link name → names of the joints and links below it
     child_map: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
 
     def add_link(self, link: Link) -> None:
