@@ -1,4 +1,4 @@
-"""The mission of a bag: its ID is computed from the messages, its statistics come from a replay."""
+"""The mission of a bag, with its ID and its statistics."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Replay = Callable[[Path, int], EpisodeRun]
 
 @dataclass(frozen=True)
 class Bagged:
-    """A bag's mission: its ID, which is the same only in copies of the bag, and its start in seconds since 1970."""
+    """The ID of a bag's mission, and its start in seconds since 1970."""
 
     mission: int
     time: float
@@ -58,7 +58,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
 
 
 def replayed(path: Path, mission: int, fixture: Fixture, replay: Replay) -> tuple[Sample, tuple[str, ...]]:
-    """Return the statistics of a bag's mission, and notes on its replay. Raise LogError if the bag has no rewards."""
+    """Replay a bag; return its statistics and notes. Raise LogError if it has no rewards."""
     run = replay(path, mission)
     if not run.trace.steps:
         raise LogError(

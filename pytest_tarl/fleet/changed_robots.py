@@ -33,7 +33,7 @@ PORTION = 50_000  # number of missions judged in one task
 
 @dataclass(frozen=True)
 class Robot:
-    """The evidence on one robot, as log2 of e-values: `world` for a difference, `bound` for the violation of a bound.
+    """The evidence on one robot (log2 of e-values): a different world, or a violated bound.
 
     `status` is None if neither e-value reaches 1/q, the minimum for e-BH to reject a hypothesis.
     """
@@ -48,7 +48,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Robots:
-    """All robots by name, and the robots that e-BH reports at the false discovery rate `q`, most evidence first."""
+    """All robots by name, and those that e-BH reports at rate `q`."""
 
     q: float
     every: tuple[Robot, ...]
@@ -57,7 +57,7 @@ class Robots:
 
 
 def judged(database: Database, first: Monitor, scores: Scores, engine: Engine, q: float) -> Robots:
-    """Judge each robot's missions in the order of their times; `first` is a monitor that has not seen any mission."""
+    """Judge each robot's missions in order of time, starting from the monitor `first`."""
     rows = database.columns(
         "SELECT any_value(robot) AS robot, max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ends"
     )
@@ -67,7 +67,7 @@ def judged(database: Database, first: Monitor, scores: Scores, engine: Engine, q
 def watched(
     first: Monitor, scores: Scores, names: Sequence[str], ends: object, engine: Engine, q: float
 ) -> Iterator[Robot]:
-    """Yield the evidence on the robots. The missions of robot n are numbered from `ends[n - 1]` to `ends[n]` - 1."""
+    """Yield the evidence on each robot. Robot n has missions `ends[n - 1]` to `ends[n]` - 1."""
     every: Ints = np.asarray(ends).astype(np.int64)
     some = list(portions(every))
 
@@ -135,7 +135,7 @@ def portions(ends: Ints) -> Iterator[Ints]:
 
 
 def fresh(first: Monitor) -> Monitor:
-    """Return a new monitor of the same recording that has not seen any mission."""
+    """Return a new monitor of the same recording, without missions."""
     processes = restarts.begun(first.processes.threshold)
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
 
@@ -163,6 +163,6 @@ def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: ob
 
 
 def lower(found: Status) -> Evidence | None:
-    """Return the evidence against the bound with the most evidence, or None if no bound can be tested."""
+    """Return the strongest evidence against a bound, or None if none can be tested."""
     told = [evidence for _, evidence in found.bounds if evidence is not None]
     return max(told, key=lambda evidence: evidence.highest, default=None)

@@ -29,7 +29,7 @@ MOST = 300
 
 @dataclass(frozen=True)
 class Cluster:
-    """The names of robots with similar maps, their common cells, and the mean residual of a visit to each cell."""
+    """Robots with similar maps, their common cells, and the mean residuals."""
 
     robots: tuple[str, ...]
     cells: tuple[Cell, ...]
@@ -38,7 +38,7 @@ class Cluster:
 
 @dataclass(frozen=True)
 class Clusters:
-    """The clusters, largest first; robots whose maps have no significant cell; the number of robots not compared."""
+    """The clusters, largest first, and the robots without one."""
 
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
@@ -130,7 +130,7 @@ def _cluster(maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell
 
 
 def _standing_out(mean: Floats, variance: Floats, alpha: float) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Return the cells whose mean residual differs significantly from 0, corrected for the number of cells."""
+    """Return the cells with a significant mean residual, corrected for their number."""
     with np.errstate(divide="ignore", invalid="ignore"):
         size = np.where(mean == 0.0, 0.0, np.abs(mean) / np.sqrt(variance))
     known = ~np.isnan(size)

@@ -53,7 +53,7 @@ class Totals:
 
 @dataclass(frozen=True)
 class Component:
-    """A variance and its two-sided interval; both are NaN if the missions do not determine the variance."""
+    """A variance and its two-sided interval; NaN if it cannot be determined."""
 
     name: str
     variance: float
@@ -129,7 +129,7 @@ def _resampled(robots: int, rng: np.random.Generator) -> list[Floats]:
 
 
 class _Design:
-    """The sums of squares and products of a data set; the robots can be weighted."""
+    """The sums of squares and products of a data set with weighted robots."""
 
     def __init__(self, totals: Totals) -> None:
         self.totals = totals
@@ -144,7 +144,7 @@ class _Design:
         self.reward = np.bincount(totals.robot, totals.reward, robots)
 
     def fit(self, weights: Floats) -> _Fit:
-        """Return the components for a sample that contains robot i `weights[i]` times; shape (robots,)."""
+        """Return the components with weights per robot, shape (robots,)."""
         x, n, s = self.visits, self.missions, self.reward
         products, sums = self._products(weights), self._sums(weights * 1.0)
         squares = float(weights @ self.totals.squares)

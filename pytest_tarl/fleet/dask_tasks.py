@@ -44,7 +44,7 @@ class Engine(Protocol):
 
 @dataclass(frozen=True)
 class Local:
-    """Dask's scheduler in this process; it runs a limited number of tasks at a time, which bounds the memory."""
+    """Dask's scheduler in this process; limits the running tasks, and so the memory."""
 
     workers: int
     threads: ThreadPoolExecutor | None  # None with one worker
@@ -73,7 +73,7 @@ class Cluster:
     workers: int
 
     def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
-        """Yield the results in order; AHEAD tasks per thread are submitted at a time."""
+        """Yield the results in order, with AHEAD tasks per thread at a time."""
         waiting: deque[Future[Result]] = deque()
         try:
             for one in tasks:
@@ -117,7 +117,7 @@ def _result(future: Future[Result]) -> Result:
 
 @contextmanager
 def local(workers: int) -> Iterator[Engine]:
-    """Return an engine for this process; linear algebra outside tasks uses one thread, too."""
+    """Return an engine for this process, with single-threaded linear algebra."""
     with threadpool_limits(1, user_api="blas"):
         if workers == 1:
             yield Local(1, None)

@@ -16,7 +16,7 @@ from tarl_lint.files import write_atomically
 
 @dataclass(frozen=True)
 class Store:
-    """A folder; `root` is its path in the file system `fs`; `protocol` is "file" for a local folder."""
+    """The folder `root` in the file system `fs`; `protocol` is "file" if it is local."""
 
     fs: Any
     root: str
@@ -38,7 +38,7 @@ class Store:
         return sorted(one[start:] for one in found if one.endswith(".parquet"))
 
     def write(self, path: str, content: bytes) -> None:
-        """Write a file atomically, so readers never see a part of it. Raise FleetError if that fails."""
+        """Write a file atomically. Raise FleetError if that fails."""
         try:
             if self.protocol == "file":
                 write_atomically(Path(self.root) / path, content, parents=True)

@@ -44,14 +44,14 @@ Columns = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Filter:
-    """Select the missions of one robot and since one day (UTC); each condition is optional."""
+    """Select the missions of one robot, or since one day (UTC), or both."""
 
     robot: str = ""
     since: date | None = None
 
 
 class Database:
-    """The selected missions, numbered from 0 by robot, time and mission ID; `wanted` lists them for each file."""
+    """The selected missions, numbered from 0; `wanted` lists them per file."""
 
     def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
@@ -130,7 +130,7 @@ def _spilled() -> Iterator[str]:
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:
-    """Load the missions; if one occurs several times, keep the first copy in the order of version, robot and site."""
+    """Load each mission once; of several copies, keep the first."""
     grouped = ", ".join(f"{BY[one]} AS by_{one}" for one in by)
     order = ", ".join(f"by_{one}" for one in by) or "1"
     since = -1.0

@@ -1,4 +1,4 @@
-"""The files of a data set: the recording to which each file belongs, and the missions in it."""
+"""The files of a data set, their missions, and the recording of each file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.fleet.schema import PREFIX, READABLE, Origin
 
 @dataclass(frozen=True)
 class Part:
-    """A file of the table `missions`, relative to the data set, with its origin and its number of missions."""
+    """A file of the table `missions`. Its path is relative to the data set."""
 
     path: str
     origin: Origin
@@ -51,7 +51,7 @@ def parts(where: Store) -> list[Part]:
 
 
 def known(where: Store, folder: str, date: str) -> Iterator[tuple[int, str]]:
-    """Yield the ID and the robot of each mission of one day in the partition of a test."""
+    """Yield the ID and robot of each mission of a test on one day."""
     for path in where.files(f"missions/test={folder}"):
         if f"/date={date}/" in path:
             table = columns(where, path, ["mission", "robot"])

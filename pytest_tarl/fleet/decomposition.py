@@ -28,7 +28,7 @@ MISSIONS = """
 
 @dataclass(frozen=True)
 class Decomposition:
-    """The components of the variance of a mission's reward; `season` is "month" or "week"."""
+    """The variance components of a mission's reward. `season` is "month" or "week"."""
 
     season: str
     components: tuple[Component, ...]
@@ -63,7 +63,7 @@ def _count(database: Database, column: str) -> int:
 
 
 def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...]) -> Totals:
-    """Return the sums; the mean reward is subtracted from each reward, so that squares lose no digits."""
+    """Return the sums of rewards minus their mean, so that squares lose no digits."""
     joins = " ".join(f"JOIN of_{name} ON of_{name}.name = {column}" for name, column in factors.items())
     codes = ", ".join(f"of_{name}.code AS {name}_code" for name in factors)
     query = MISSIONS.format(codes=codes, joins=joins)

@@ -13,7 +13,7 @@ EXTREMES = 2  # maximum number of levels named for each factor
 
 
 def lines(parts: Decomposition) -> Iterator[str]:
-    """Yield a line for each component: its share of the variance, its interval and its most extreme levels."""
+    """Yield one line per component: its share, its interval and its most extreme levels."""
     total = parts.total
     yield f"Variance of a mission's reward, {total:.4g}, by source ({100 * parts.confidence:g} % intervals)"
     for one, levels in zip(parts.components, (*parts.levels, (), ()), strict=True):

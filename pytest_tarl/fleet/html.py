@@ -174,7 +174,7 @@ def _repairs(answer: Answer) -> Iterator[dict[str, Any]]:
 
 
 def _data(answer: Answer, vocabulary: Vocabulary) -> dict[str, Any]:
-    """Return the data for the page's script; times are in seconds since 1970, evidence is the log2 of e-values."""
+    """Return the data of the page (times in s since 1970, evidence as log2 of e-values)."""
     every = answer.robots.every
     number = {one.name: n for n, one in enumerate(every)}
     named = {one.name: one for one in (*answer.robots.below, *answer.robots.drifted)}
@@ -248,7 +248,7 @@ def _group(one: Group, watched: Robot, changed: bool, vocabulary: Vocabulary) ->
 
 
 def _since(one: Robot) -> tuple[int, float] | None:
-    """Return the mission and time at which the difference began, according to the test with more evidence."""
+    """Return the mission and time of the onset, by the stronger test."""
     if one.status is None:
         return None
     below = lower(one.status)
@@ -270,14 +270,14 @@ def _named(answer: Answer, one: Robot, vocabulary: Vocabulary) -> dict[str, Any]
 
 
 def _differing(answer: Answer, one: Robot) -> tuple[Cell, ...]:
-    """Return the cells in which a robot differs: those in its status or, if there are none, those of its cluster."""
+    """Return the cells in which a robot differs, from its status or its cluster."""
     if one.status is not None and one.status.cells:
         return one.status.cells
     return next((group.cells for group in answer.clusters.found if one.name in group.robots), ())
 
 
 def _residuals(answer: Answer, found: ResidualMap | None, vocabulary: Vocabulary) -> list[dict[str, Any]]:
-    """Return the cells of a residual map with the largest residuals, measured in standard errors."""
+    """Return the cells with the largest residuals in standard errors."""
     if found is None:
         return []
     rows = [
@@ -295,7 +295,7 @@ def _residuals(answer: Answer, found: ResidualMap | None, vocabulary: Vocabulary
 
 
 def _cells(answer: Answer, named: list[Robot], vocabulary: Vocabulary) -> list[dict[str, Any]]:
-    """Return the cells in which the largest numbers of named robots and groups differ."""
+    """Return the cells in which most of the named robots and groups differ."""
     changed = _changed(answer)
     robots = Counter(cell for one in named for cell in _differing(answer, one))
     groups = Counter(

@@ -1,4 +1,4 @@
-"""`tarl ingest`: add the missions of logs and bags to a data set without duplicates, even after interruptions."""
+"""`tarl ingest`: add the missions of logs and bags to a data set, each once."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Order:
 
 @dataclass(frozen=True)
 class Ingested:
-    """The result for one log: how many of its missions are new and how many are known, or why it was not read."""
+    """The numbers of new and known missions of one log, or why it was not read."""
 
     log: Path
     robot: str
@@ -83,7 +83,7 @@ def ingest(order: Order) -> Iterator[Ingested]:
 
 
 def _bag(order: Order, log: Path, robot: str, repair: str, into: _Writer) -> Ingested:
-    """Add the mission of a bag, replaying it only if the data set lacks the mission. Raise LogError if that fails."""
+    """Replay a bag and add its mission, unless it is known. Raise LogError on failure."""
     found = identified(log, into.fixture)
     time = valid_time(found.time)
     if into.holds(date(time), found.mission, robot):
@@ -124,7 +124,7 @@ def named(order: Order, log: Path) -> str:
 
 
 def keep_origin(to: Store, given: str, repair: str) -> None:
-    """Store the test and the drift for which a patch of TARL was accepted; the patch itself is not stored."""
+    """Store the test and drift of an accepted patch, but not the patch."""
     if not given.endswith(PATCH):
         return
     try:
@@ -181,7 +181,7 @@ class _Writer:
         return other is not None
 
     def _held(self, day: str) -> dict[int, str]:
-        """Return the robot of each stored or queued mission of a day, by mission ID."""
+        """Return mission ID → robot for all missions of a day."""
         if day not in self.known:
             found = dataset.known(self.store, self.origin.folder, day)
             self.known[day] = dict(found)

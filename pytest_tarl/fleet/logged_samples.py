@@ -55,7 +55,7 @@ def requirements_of(fixture: Fixture) -> Requirements:
 
 
 def plan_of(fixture: Fixture) -> Plan:
-    """Return the sites of a recording as a plan, without the positions of the sites in the source."""
+    """Return a recording's sites as a plan, without source positions."""
     places = {place.id: place for one in fixture.lists for place in one.sites}
     number = {site: n for n, site in enumerate(places)}
     members = tuple(tuple(number[place.id] for place in one.sites) for one in fixture.lists)
@@ -63,7 +63,7 @@ def plan_of(fixture: Fixture) -> Plan:
 
 
 def identity(mission: Mission) -> int:
-    """Return the ID of a mission; copies of the mission in other files have the same ID."""
+    """Return the ID of a mission; copies have the same ID."""
     content = json.dumps(
         [mission.time, mission.passed, mission.failure, [*mission.sites], mission.chunks],
         ensure_ascii=False,

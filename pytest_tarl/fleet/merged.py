@@ -23,7 +23,7 @@ from pytest_tarl.observing.log_format import MAGIC
 
 @dataclass(frozen=True)
 class Part:
-    """A merged file: its number of episodes or missions, and how many of them were already in earlier files."""
+    """A merged file and its number of episodes; some may also be in earlier files."""
 
     path: Path
     episodes: int
@@ -88,7 +88,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
-    """Return the recording of all episodes; hashes of modules are left out if they differ between recordings."""
+    """Return the recording of all episodes, without the hashes of modules that differ."""
     worlds = [one.world for one in recordings] or [design.world]
     world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
     return replace(

@@ -30,7 +30,7 @@ FEWEST = 2  # minimum number of missions for a verdict
 
 @dataclass(frozen=True)
 class Judged:
-    """The results of a formula in a group: number of missions judged, number of violations, least robustness."""
+    """The results of a formula in a group of missions."""
 
     formula: str
     missions: int
@@ -40,7 +40,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Group:
-    """A group of missions: its values of the columns, its bounds, and its verdict if it has enough missions."""
+    """A group of missions, its bounds, and its verdict if it has enough missions."""
 
     values: tuple[str, ...]
     missions: int
@@ -153,7 +153,7 @@ def _compared(
     tolerance: float | None,
     seed: int,
 ) -> tuple[int, Difference | None]:
-    """Return how many missions of a group were compared, and the difference, or None with too few missions."""
+    """Return the number of compared missions and their difference; None for too few."""
     if sample.episodes < FEWEST:
         return sample.episodes, None
     return sample.episodes, compare(

@@ -1,4 +1,4 @@
-"""The rows of missions: their statistics as Arrow tables, and as Parquet files named by hashes of their content."""
+"""The statistics of missions as Arrow tables and Parquet files."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def date(time: float) -> str:
 
 
 def files(rows: Sequence[Row], where: Origin, lists: Sequence[TaintList]) -> tuple[str, dict[str, bytes]]:
-    """Return the names and contents of the files of some missions, by table; the missions may be in any order."""
+    """Return name → content of the files of some missions, by table."""
     rows = sorted(rows, key=lambda row: (row.robot, row.time, row.mission))
     tables = {"missions": _missions(rows), "cells": _cells(rows), "statements": _statements(rows, lists)}
     about = metadata(where)

@@ -28,7 +28,7 @@ RESULTS = ("mission", "passed", "total", "steps")
 
 @dataclass(frozen=True)
 class Wanted:
-    """The selected missions of a part: their sorted IDs, and their numbers in the database of the query."""
+    """The selected missions of a part: their IDs and their numbers in the query."""
 
     cells: str  # file with the transitions between cells
     missions: str  # file with the results of the missions
@@ -78,7 +78,7 @@ class Transitions:
 
 @dataclass(frozen=True)
 class Scored:
-    """The bins of missions' scores, shape (missions, scores), and the visits to cells that the recording lacks."""
+    """The score bins, shape (missions, scores), and the visits to unrecorded cells."""
 
     numbers: Ints
     bins: NDArray[np.int8]
@@ -130,7 +130,7 @@ def numbered(cells: Sequence[Cell]) -> dict[str, int]:
 
 
 def _rows(table: Any, wanted: Wanted, number: Mapping[str, int]) -> Transitions:
-    """Return the transitions of a part's missions, in any order; `number` is the mission's place in `wanted`."""
+    """Return the transitions of a part's missions, numbered by their place in `wanted`."""
     mission = _values(table["mission"], np.uint64)
     begins = (
         np.flatnonzero(np.append(True, mission[1:] != mission[:-1])) if mission.size else np.empty(0, int)
@@ -182,7 +182,7 @@ def sorted_rows(some: Sequence[Transitions]) -> Transitions:
 
 
 def watched_chain(chain: Chain, recorded: int) -> Chain:
-    """Return the chain with all unrecorded cells replaced by one cell, and with values rounded as in a recording."""
+    """Return the chain with one cell for all unrecorded cells, and rounded values."""
     return represented_chain(_without_others(chain, recorded))
 
 
@@ -192,7 +192,7 @@ def bare(cells: int, passed: Any, total: Floats, steps: Ints, chain: Chain) -> S
 
 
 def _without_others(chain: Chain, recorded: int) -> Chain:
-    """Replace all cells that the recording lacks by one cell, and merge transitions that become equal."""
+    """Replace all unrecorded cells by one, and merge equal transitions."""
     width = recorded + 1
     cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
     if not ((chain.cell >= recorded).any() or (chain.next_cell >= recorded).any()):
@@ -209,7 +209,7 @@ def _without_others(chain: Chain, recorded: int) -> Chain:
 
 
 def _codes(column: Any, number: Mapping[str, int]) -> Ints:
-    """Return the codes of a column of cell names: END for null, and -2 for a cell that is not in `number`."""
+    """Return the codes of cell names: END for null, -2 for unknown cells."""
     parts = [np.empty(0, np.int64)]
     for chunk in _encoded(column).chunks:
         code = np.array([*(number.get(name, -2) for name in chunk.dictionary.to_pylist()), END], np.int64)
@@ -231,7 +231,7 @@ def _values(column: Any, kind: Any) -> Any:
 
 
 def portions(wanted: Sequence[Wanted], most: int) -> Iterator[list[Wanted]]:
-    """Divide the missions into tasks of about `most` missions; skip parts without selected missions."""
+    """Divide the selected missions into tasks of about `most` missions."""
     together: list[Wanted] = []
     for one in wanted:
         if not one.numbers.size:

@@ -60,7 +60,7 @@ class Mission:
 
 @dataclass(frozen=True)
 class Answer:
-    """What the data set shows; `left_out` is the number of missions that cannot be compared, by reason."""
+    """The answer from a data set; `left_out` counts missions that cannot be compared."""
 
     question: Question
     fixture: Fixture
@@ -117,7 +117,7 @@ def answer(question: Question) -> Answer:
 
 
 def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]:
-    """Return the drift for which each repair was accepted, if the patch named it when the missions were ingested."""
+    """Return the drift for which each repair was accepted, if it is known."""
     found = {}
     for repair in sorted({one.repair for one in effects}):
         path = repair_path(repair)
@@ -184,7 +184,7 @@ def _lowest(database: Database) -> tuple[Mission, ...]:
 
 
 def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple[Fixture, Origin]:
-    """Return the recording that the question names or, if it names none, the one in the data set."""
+    """Return the named recording, or else that of the data set."""
     if question.fixture is not None:
         fixture = load(question.fixture)
         return fixture, origin(fixture, question.fixture.read_bytes())

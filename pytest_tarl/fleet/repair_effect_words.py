@@ -14,7 +14,7 @@ WHY = {
 
 
 def lines(effects: Sequence[Effect], accepted: Mapping[str, str]) -> Iterator[str]:
-    """Yield a line for each repair and group: the difference between missions with and without the repair."""
+    """Yield one line per repair and group: the effect of the repair on missions."""
     yield (
         "Repairs, against missions without a repair at the same site in the same week (simultaneous "
         "intervals at "

@@ -67,7 +67,7 @@ class Strata:
 
 
 def effects(database: Database, by: Sequence[str]) -> tuple[Effect, ...]:
-    """Return the effect of each repair in each group; the columns `by`, except that of the repair, form the groups."""
+    """Return the effect of each repair in each group of missions."""
     columns = tuple(one for one in by if one != "repair")
     repairs = [
         one for (one,) in database.names("SELECT DISTINCT repair FROM missions WHERE repair <> '' ORDER BY 1")
@@ -88,7 +88,7 @@ def _groups(database: Database, repair: str, columns: Sequence[str]) -> Iterator
 
 
 def _strata(database: Database, repair: str, columns: Sequence[str], values: Sequence[str]) -> Strata:
-    """Return the rows of the strata; sums are computed in the order of the missions."""
+    """Return the rows of the strata, summed in mission order."""
     here = "".join(f" AND CAST({BY[one]} AS VARCHAR) = ?" for one in columns)
     found = database.columns(
         f"SELECT robot_number, dense_rank() OVER (ORDER BY site, {BY['week']}) - 1 AS stratum, repair = ? AS treated, "  # noqa: S608
@@ -103,7 +103,7 @@ def _strata(database: Database, repair: str, columns: Sequence[str], values: Seq
 
 
 def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Ints) -> Strata:
-    """Return one row per robot and stratum, given one row per mission; keep strata with missions of both kinds."""
+    """Return one row per robot and stratum with missions of both kinds."""
     stratum, treated = stratum.astype(np.int64), treated.astype(np.int64)
     both = np.bincount(stratum * 2 + treated, minlength=2 * (int(stratum.max(initial=0)) + 1)).reshape(-1, 2)
     there = both.min(axis=1)[stratum] > 0
@@ -118,7 +118,7 @@ def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Int
 
 
 def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float) -> Effect:
-    """Return the effect computed from the rows of strata; each bound is one-sided and has the given confidence."""
+    """Return the effect over the strata. Each bound is one-sided."""
     counts = rows.count.sum(axis=0).astype(int).tolist() if len(rows.robot) else [0, 0]
     robots = [len(set(rows.robot[rows.count[:, arm] > 0].tolist())) for arm in (0, 1)]
     (reward, reward_bound), (success, success_bound) = (
@@ -163,7 +163,7 @@ def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tu
 
 
 def _difference(count: Floats, total: Floats) -> tuple[Floats, Floats]:
-    """Return the weight and the weighted difference of each row; both are 0 in a row with one kind of missions."""
+    """Return weight and weighted difference of each row; 0 without missions of both kinds."""
     both = count.min(axis=1) > 0.5
     safe = np.where(both[:, None], count, 1.0)
     weight = np.where(both, safe[:, 0] * safe[:, 1] / safe.sum(axis=1), 0.0)

@@ -26,7 +26,7 @@ FEWEST = 5  # minimum number of missions in a cell for which a residual is state
 
 @dataclass(frozen=True)
 class ResidualMap:
-    """Mean residual of a visit and its variance, by cell of the recording; NaN for cells with too few missions."""
+    """Mean and variance of the residual per cell; NaN with too few missions."""
 
     robot: str
     mean: Floats
@@ -35,7 +35,7 @@ class ResidualMap:
 
 @dataclass(frozen=True)
 class Designed:
-    """The recorded world: its model, the variance of each cell's mean residual, and that of a visit's residual."""
+    """The recorded model, with the residual variance per cell and per visit."""
 
     model: Model
     variance: Floats
@@ -43,7 +43,7 @@ class Designed:
 
 
 def designed(fixture: Fixture) -> Designed:
-    """Return the model of a recording, for the recorded cells and one cell for all others (as in `following`)."""
+    """Return the model of a recording, with one cell for all unrecorded cells."""
     cells = len(fixture.sample.cells) + 1
     model = fitted(fixture.sample.chain, cells)
     own = Sample(**{**vars(fixture.sample), "cells": ((),) * cells, "lists": ()})
@@ -82,7 +82,7 @@ def _map(name: str, sample: Sample, world: Designed) -> ResidualMap:
 
 
 def since(robot: Robot) -> int:
-    """Return the number of missions before the onset, according to the process with more evidence; 0 if unknown."""
+    """Return the number of missions before the onset; 0 if it is unknown."""
     if robot.status is None:
         return 0
     below = lower(robot.status)
@@ -91,7 +91,7 @@ def since(robot: Robot) -> int:
 
 
 def _mean(sample: Sample, model: Model) -> tuple[Floats, Floats, Floats]:
-    """Return the mean residual, its variance and the number of visits, by cell, treating missions as independent."""
+    """Return mean residual, variance and visits per cell, for independent missions."""
     found = residuals(sample, model)
     total = found.move + found.reward
     place = sample.chain.episode * total.shape[1] + sample.chain.cell

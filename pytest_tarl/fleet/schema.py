@@ -90,7 +90,7 @@ class Origin:
 
 
 def origin(fixture: Fixture, content: bytes) -> Origin:
-    """Return the origin of missions that are ingested with a recording; `content` is the content of its file."""
+    """Return the origin of missions, given the content of their recording."""
     sites = json.dumps(fixture.statements)
     return Origin(
         fixture.test,
@@ -111,7 +111,7 @@ def partition(where: Origin, version: str, date: str) -> str:
 
 
 def repair_path(repair: str) -> str:
-    """Return the path of a repair's file. The file states the test and drift for which the patch was accepted."""
+    """Return the path of the file that describes an accepted patch."""
     return f"repairs/{quote(repair, safe='')}.json"
 
 
@@ -121,5 +121,5 @@ def name_of(cell: Cell) -> str:
 
 
 def cell_of(name: str) -> Cell:
-    """Return the cell with this name. Raise ValueError if the text is not a name of a cell."""
+    """Return the cell with this name. Raise ValueError for other texts."""
     return tuple(int(one) for one in name.split(",")) if name else ()

@@ -1,4 +1,4 @@
-"""The scores of all selected missions, one byte each. Workers compute them where they read the rows."""
+"""The scores of all selected missions, one byte each."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Scores:
         )
 
     def ordered(self, order: Ints) -> Scores:
-        """Return the missions in another order; `order` is a permutation of 0 … missions - 1, of shape (missions,)."""
+        """Return the missions in the given order, a permutation of shape (missions,)."""
         place = np.empty_like(order)
         place[order] = np.arange(order.size)
         moved = place[self.new_mission]
@@ -68,7 +68,7 @@ class Scores:
         )
 
     def new(self) -> list[Cell]:
-        """Return the cells that the recording lacks, once for each mission that visited them."""
+        """Return the unrecorded cells, once per mission that visited them."""
         return [self.others[number] for number in self.new_cell.tolist()]
 
 
@@ -99,7 +99,7 @@ def scored(database: Database, where: Store, scale: Scale, engine: Engine) -> Sc
 def transitions(
     database: Database, where: Store, cells: Sequence[Cell], engine: Engine, missions: Ints
 ) -> partitions.Transitions:
-    """Return the transitions of the missions with the numbers `missions`, an array of shape (chosen,)."""
+    """Return the transitions of the chosen missions, shape (chosen,)."""
     chosen = np.zeros(database.missions, bool)
     chosen[missions] = True
     wanted = [one.only(chosen[one.numbers]) for one in database.wanted]

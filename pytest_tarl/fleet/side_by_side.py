@@ -35,7 +35,7 @@ class Watched:
         return len(self.pool) // len(self.robots)
 
     def peaks(self) -> Floats:
-        """Return log2 of the largest evidence of each robot's processes so far, shape (robots, processes)."""
+        """Return log2 of each process's largest evidence so far, shape (robots, processes)."""
         return self._by_robot(self.processes.peak)
 
     def latest(self) -> Floats:
@@ -57,7 +57,7 @@ class Watched:
 def watched(
     first: Monitor, scores: Scores, ends: Ints, some: Ints | None = None, onsets: bool = True
 ) -> Iterator[Watched]:
-    """Judge the missions of robots; yield the results of robots with similar numbers of missions together.
+    """Judge the missions of robots, in batches with similar numbers of missions.
 
     The missions of robot n end before `ends[n]`; `ends` has shape (robots,). `first` is a monitor that has not seen any
     mission. `some`, of shape (chosen,), are the indices of the robots to judge (default: all). Without `onsets`, the

@@ -51,11 +51,11 @@ class Bet:
         return most + log(sum(share * exp(one - most) for share, one in zip(self.shares, each, strict=True)))
 
     def powerless(self, episodes: int, risk: float) -> bool:
-        """Return whether the bets cannot win within `episodes` episodes, even if no episode has a loss."""
+        """Return whether the bets can never win within `episodes` episodes."""
         return self.wealth([0.0] * episodes) < -log(risk)
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
-        """Return whether the bets are unlikely to win within `left` more episodes, even at an optimistic mean."""
+        """Return whether the bets are unlikely to win within `left` more episodes."""
         counted = [max(one, self.least) for one in differences]
         best = mean_of(counted, 1.0 - CERTAIN).high
         if best < -self.margin:
@@ -83,6 +83,6 @@ def _grown(stake: float, differences: Sequence[float], margin: float, least: flo
 
 
 def _bounded(stake: float, margin: float, least: float, share: float) -> float:
-    """Return the stake, reduced if necessary, so that the worst episode loses at most `share` of the wealth."""
+    """Return the stake, limited to a loss of `share` of the wealth per episode."""
     deepest = -least - margin
     return stake if deepest <= 0.0 else min(stake, share / deepest)

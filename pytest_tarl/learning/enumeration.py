@@ -1,4 +1,4 @@
-"""All groups that a permutation test can form, for samples with few enough of them."""
+"""All groups of a permutation test, for small samples."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from pytest_tarl.learning.tables import Ints
 
 
 def enumerable(rows: int, chosen: int, shuffles: int) -> bool:
-    """Return whether at most `shuffles` groups of `chosen` rows exist, not counting the observed group."""
+    """Return whether there are at most `shuffles` other groups of `chosen` rows."""
     return comb(rows, chosen) - 1 <= shuffles
 
 
 @lru_cache(maxsize=8)
 def other_groups(rows: int, chosen: int) -> Ints:
-    """Return the rows of each possible group except the observed one (the first rows), shape (groups - 1, chosen).
+    """Return the rows of all groups but the observed one, shape (groups - 1, chosen).
 
     A permutation test over these groups and the observed one is exact, and its smallest p-value is 1 / groups.
     """

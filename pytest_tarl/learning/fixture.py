@@ -110,7 +110,7 @@ def save(fixture: Fixture, path: Path) -> None:
 
 
 def prepare(path: Path) -> None:
-    """Check before the episodes run that the recording can be written. Raise FixtureError if not."""
+    """Check that the recording can be written. Raise FixtureError if not."""
     try:
         check_writable(path)
     except OSError as problem:
@@ -122,7 +122,7 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 
 def load(path: Path) -> Fixture:
-    """Read a recording. Raise FixtureError if the file is missing or unreadable, is damaged, or has another format."""
+    """Read a recording. Raise FixtureError if that is impossible."""
     try:
         content = read_regular(path)
     except FileNotFoundError:
@@ -189,7 +189,7 @@ def _why(problem: Exception) -> str:
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:
-    """Return the number of bytes that the columns of each taint list take on disk."""
+    """Return the size on disk (bytes) of each taint list's columns."""
     with ZipFile(path) as archive:
         entries = archive.infolist()
     return tuple(

@@ -52,7 +52,7 @@ def prior(
 
 
 def _difference(one: Slice) -> float:
-    """Return the absolute difference of a slice between the worlds, or 0 if it is unknown or only a rounding error."""
+    """Return the absolute difference of a slice; 0 if unknown or a rounding error."""
     size = abs(one.difference)
     return size if size > 4 * ROUNDING * (abs(one.offline) + abs(one.online)) else 0.0
 
@@ -70,7 +70,7 @@ def culprits(
     loss: float,
     method: str = "sweep",
 ) -> tuple[Culprit, ...]:
-    """Rank sites by the effects that were measured in simulation, or by their slices if there are no effects.
+    """Rank sites by their measured effects, or else by their slices.
 
     `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
     the confirmed repair get the highest score; among them, the site with the largest effect of its own comes first.

@@ -50,7 +50,7 @@ def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
 
 
 def aligned(first: Sample, second: Sample) -> tuple[Sample, Sample]:
-    """Return both samples with one common table of cells, so that their rows can be compared."""
+    """Return both samples with one common table of cells."""
     return merge([first], second.cells), merge([second], first.cells)
 
 
@@ -96,7 +96,7 @@ class _Place:
         return _kept(moved)
 
     def flow(self, i: int, merged: Floats) -> None:
-        """Write the flows of a taint list to the rows of its episodes in `merged`, shape (merged episodes, sites)."""
+        """Write a taint list's flows to its rows in `merged`, shape (merged episodes, sites)."""
         kept = self.episode >= 0
         merged[self.episode[kept]] = self.sample.lists[i].flow[kept]
 

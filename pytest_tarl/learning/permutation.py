@@ -26,7 +26,7 @@ AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor'
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
-    """Return the number of shuffles that makes a significant result possible after correcting for the comparisons."""
+    """Return the number of shuffles needed for significance after correction."""
     return (
         min(max(PERMUTATIONS, ceil(2 * comparisons / alpha) - 1), MOST_PERMUTATIONS)
         if comparisons > 1

@@ -50,7 +50,7 @@ class Evidence:
 
 
 def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) -> Evidence:
-    """Fit a model to one half of the recorded episodes, and compare the other half with the deployed episodes."""
+    """Fit one half of the recorded episodes; compare the other with the deployed ones."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))

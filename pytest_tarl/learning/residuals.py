@@ -38,13 +38,13 @@ class Residuals:
 
 
 def in_fit(seed: int) -> bool:
-    """Return whether a recorded episode is used to fit the utility; all others are used for the comparison."""
+    """Return whether a recorded episode is used for the fit; the others are compared."""
     return zlib.crc32(str(seed).encode()) % 2 == 0
 
 
 @dataclass(frozen=True)
 class Model:
-    """The expected move and reward of a step in each cell of the designed world, shape (cells,); NaN if unknown."""
+    """Expected move and reward per designed step, shape (cells,); NaN if unknown."""
 
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over all steps except the last one of an episode
@@ -88,12 +88,12 @@ def residuals(compared: Sample, model: Model) -> Residuals:
 
 
 def beyond(values: Floats, error: Floats) -> Floats:
-    """Return the values, with 0 for those that do not exceed their error; all arrays have the same shape."""
+    """Return the values, with 0 where a value does not exceed its error."""
     return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _gain(chain: Chain, utility: Floats) -> Floats:
-    """Return γU(x')-U(x) for each transition: 0 for the last step, NaN if a utility is unknown."""
+    """Return γU(x')-U(x) per transition: 0 at the end, NaN if unknown."""
     inside = chain.next_cell != END
     return np.where(
         inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0

@@ -18,7 +18,7 @@ MATERIAL = 0.1  # minimum loss of a reported cell, as a share of the largest los
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
-    """Return the mean sum per episode of each part of the reward, in the designed and in the deployed world."""
+    """Return each reward part's mean sum per episode, in both worlds."""
     names = sorted({*offline.part_names, *online.part_names})
     return {
         name: (
@@ -32,7 +32,7 @@ def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
 def lost(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
 ) -> Mapping[str, tuple[Cell, ...]]:
-    """Return, for each part, the cells in which it is significantly lower in the deployed world.
+    """Return each part's cells with a significant loss in the deployed world.
 
     Both samples must share one table of cells. P-values are corrected over all cells of all parts. The result also
     includes cells whose sum is lower only because episodes no longer reach them.
@@ -52,7 +52,7 @@ def lost(
 
 
 def _by_cell(world: Sample, name: str) -> Floats:
-    """Return the sums of a part, shape (episodes, cells), or zeros if the world lacks the part."""
+    """Return the sums of a part, shape (episodes, cells), or zeros without it."""
     shape = (world.episodes, len(world.cells))
     if name not in world.part_names:
         return np.zeros(shape)

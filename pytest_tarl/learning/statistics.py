@@ -105,7 +105,7 @@ def summed(index: Ints, column: Floats, size: int) -> Floats:
 
 
 def _cancelled(sums: Floats, sizes: Floats) -> Floats:
-    """Set sums to 0 that are only rounding errors of cancelling values, such as `x - before` over a round trip."""
+    """Set sums to 0 if they are only rounding errors."""
     return np.where(np.abs(sums) > CANCELLED * sizes, sums, 0.0)
 
 

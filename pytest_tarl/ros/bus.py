@@ -170,7 +170,7 @@ class Bus:
         return list(self._topics.values())
 
     def publish_from(self, publication: Publication, place: Topic, message: Any, *, keep: int = 0) -> None:
-        """Publish a copy of a node's message. The world receives it immediately, other nodes when this node waits."""
+        """Publish a copy of a node's message; other nodes get it when this node waits."""
         message = snapshot(message)
         self.published[place.name] += 1
         if self.emitted is not None:
@@ -194,11 +194,11 @@ class Bus:
             self._scheduler.later(lambda: self._deliver(place, message, False, publication))
 
     def interpose(self, topic: str, channel: Channel) -> None:
-        """Add a channel that all messages on a topic pass through; it comes after the channels added before."""
+        """Add a channel for a topic, after the channels added before."""
         self.topic(topic).channels.append(channel)
 
     def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
-        """Pass a message through a topic's channels, and call `arrive` with each resulting message after its delay."""
+        """Pass a message through a topic's channels; call `arrive` with each result."""
         now = self._scheduler.time
         arrivals: list[tuple[float, Any]] = [(0.0, message)]
         for channel in place.channels:
@@ -243,7 +243,7 @@ class Bus:
             self._peers_changed(place, subscription, joined=False)
 
     def _peers_changed(self, place: Topic, subscription: Subscription, *, joined: bool) -> None:
-        """Notify the publications of a topic of a new or lost subscription, when the running node waits."""
+        """Notify a topic's publications of a new or lost subscription."""
         for publication in place.publications:
             changed = getattr(publication, "peers_changed", None)
             if changed is not None:
@@ -264,7 +264,7 @@ class Bus:
                 self.detach(subscription, place)
 
     def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
-        """Deliver copies of a message to all subscriptions; if `spare`, the last subscription gets the original."""
+        """Deliver copies to all subscriptions; with `spare`, the last gets the original."""
         for observer in self._observers:
             observer(place.name, message)
         last = place.subscriptions[-1] if spare and place.subscriptions else None

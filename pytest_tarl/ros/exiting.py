@@ -1,4 +1,4 @@
-"""If a node calls `os._exit`, end only this node; other code and forked children keep the real function.
+"""Make `os._exit` of a node end only this node.
 
 A forked child of a node is a copy of pytest. It may compute and end, but if it came back to the scheduler, it would run
 the rest of the tests a second time. It is therefore ended at the first call of the ROS API that waits.
@@ -26,7 +26,7 @@ class ProcessExit(SystemExit):
 
 @contextmanager
 def exits_of_nodes() -> Iterator[None]:
-    """Replace `os._exit` while nodes run, because it would end pytest without a verdict and with the node's status."""
+    """Replace `os._exit` while nodes run, because it would end pytest."""
     real, owner, fork = os._exit, os.getpid(), getattr(os, "fork", None)
 
     def leave(status: int) -> NoReturn:

@@ -80,7 +80,7 @@ class StandinFinder:
         return not _is_ordinary_package(root) and sibling(root) is None
 
     def _installed_by_workspace(self, root: str) -> ModuleSpec | None:
-        """Find a module that a workspace package would install, unless the search path has a module of that name."""
+        """Find a module that a workspace package would install."""
         if not packages() or _is_ordinary_package(root):
             return None
         return sibling(root) or (self._spec(root) if has_configurations(root) else None)
@@ -151,7 +151,7 @@ class StandinFinder:
 
 
 def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -> Any:
-    """Return a submodule of a stand-in (or the test's own one from `sys.modules`), or a re-exported name."""
+    """Return a submodule of a stand-in or a re-exported name."""
     inner = f"{module}.{name}"
     if inner in sys.modules:
         return sys.modules[inner]
@@ -215,7 +215,7 @@ def _imports(code: CodeType) -> set[str]:
 def standins_installed(
     scheduler: Scheduler, uninstalled: UninstalledFinder, processes: Sequence[Process]
 ) -> Iterator[None]:
-    """Install the stand-ins, the virtual host clock and the terminals of `processes`; undo all on exit."""
+    """Install stand-ins, virtual clock and terminals; undo all on exit."""
     finder = StandinFinder()
     finder.hidden = _hide(root for root in TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)

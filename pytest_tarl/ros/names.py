@@ -46,7 +46,7 @@ def require_remapping(old: str, new: str) -> None:
 
 
 def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
-    """Resolve a name used in the node with the fully qualified name `node`, as both ROS generations do.
+    """Resolve a name used in the node `node`.
 
     `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping is compared with the
     resolved name: its left side is resolved, too.

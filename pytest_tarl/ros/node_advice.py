@@ -1,4 +1,4 @@
-"""Advice on the error of a node: a sentence that says what its environment lacks and what to do."""
+"""Advice on a node's error: what is missing and what to do."""
 
 from __future__ import annotations
 
@@ -198,13 +198,13 @@ def _of_program(error: BaseException) -> list[TracebackType]:
 
 
 def _checks_arguments(entry: TracebackType) -> bool:
-    """Return whether the statement at which a frame stopped, or a condition around it, reads the arguments."""
+    """Return whether the failing statement or its condition reads the arguments."""
     texts = _statement_and_conditions(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
     return any(_ARGUMENTS.search(text) for text in texts)
 
 
 def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
-    """Return whether the line that raised the error contains `argv`, or a variable with the value of `sys.argv`."""
+    """Return whether the failing line uses `sys.argv`."""
     for entry in innermost:
         line = linecache.getline(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
         held = [name for name, value in entry.tb_frame.f_locals.items() if _is_argv(value)]

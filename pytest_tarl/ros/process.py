@@ -183,7 +183,7 @@ class Process:
             self.scheduler.wake(task)
 
     def refuse_to_wait(self) -> None:
-        """Count a wait that returns at once because the process is ending; suspend a task that tries too often."""
+        """Count a refused wait; suspend a task that tries too often."""
         self._refused += 1
         while self._refused > _PATIENCE:
             self.scheduler.wait()
@@ -217,7 +217,7 @@ class Process:
 
 
 def _status(error: SystemExit) -> str:
-    """Return the exit status; for an exit with a string, return 1 (as Python does) and the first line of the string."""
+    """Return the exit status, or 1 and the first line for an exit with a string."""
     if isinstance(error.code, int):
         return str(error.code)
     first = next((one.strip() for one in text_of(error.code).splitlines() if one.strip()), "")

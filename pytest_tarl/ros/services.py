@@ -58,7 +58,7 @@ class ServiceDirectory:
         return self._endpoints.get(name)
 
     def find_as(self, name: str, service_class: Any, caller: str) -> Endpoint | None:
-        """Return the endpoint of a service for a node that calls it, or None if there is none.
+        """Return a service's endpoint for a calling node, or None.
 
         If the endpoint has another type, the test fails with an error: on a robot, the server and `caller` would not
         connect.

@@ -26,7 +26,7 @@ class UninstalledFinder:
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find a top-level module that a workspace file imports: in its own package, or else in the workspace."""
+        """Find a top-level module in the importer's package or in the workspace."""
         if path is not None or "." in name:
             return None
         importer = _importer(sys._getframe(1))
@@ -85,7 +85,7 @@ def _is_top_level(place: Path) -> bool:
 
 
 def _is_of_project(place: Path) -> bool:
-    """Return whether a Python project without `package.xml` has a module in its folder or in `src`, and installs it."""
+    """Return whether a Python project without `package.xml` installs a module."""
     above = place.parent
     projects = (above, above.parent) if above.name == "src" else (above,)
     return any(
@@ -124,7 +124,7 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
 
 @cache
 def is_optional(file: str, line: int) -> bool:
-    """Return whether a line is in a `try` that catches a failed import; the node then works without the name."""
+    """Return whether a line is in a `try` that catches a failed import."""
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):

@@ -1,4 +1,4 @@
-"""Give a program the parameters of one launched node, which determine topic names that contain parameters."""
+"""Give a program the parameters of one launched node."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ DEEPEST = 8  # maximum nesting of parameters whose defaults contain other parame
 
 
 def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:
-    """Return the parameters that a launch file gives a node, by absolute name. Names of ROS 2 keep their dots."""
+    """Return a node's launched parameters by absolute name."""
     found: dict[str, Any] = {}
     for setting in (*launch.settings, *node.settings):
         for name, value in _stated(setting, full_name):
@@ -39,7 +39,7 @@ def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapp
 
 
 def private_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:
-    """Return the private parameters that a launch file gives a node, by the names in its code."""
+    """Return a node's private launched parameters, by the names in its code."""
     above = f"{full_name}/"
     values = parameter_values(launch, node, full_name)
     return {name.removeprefix(above): value for name, value in values.items() if name.startswith(above)}
@@ -63,7 +63,7 @@ def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Ma
 
 
 def command_line(node: LaunchedNode, launch: Launch, full_name: str) -> Mapping[str, object]:
-    """Return the command line of a launched node under ARGUMENTS; empty if a part is known only on the robot."""
+    """Return a node's command line under ARGUMENTS; empty if partly unknown."""
     try:
         given = shlex.split(node.arguments)
     except ValueError:
@@ -87,7 +87,7 @@ def whole(values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
 
 
 def _plain(value: object) -> bool:
-    """Return whether a value consists of strings, numbers, lists and mappings that the launch determines."""
+    """Return whether the launch determines a value completely."""
     if isinstance(value, list):
         return all(map(_plain, value))
     if isinstance(value, dict):
@@ -96,7 +96,7 @@ def _plain(value: object) -> bool:
 
 
 def undetermined(interface: Interface) -> bool:
-    """Return whether an end has no known name, or several. The values of all parameters may then determine its name."""
+    """Return whether parameters may determine the name of an end."""
     ends = [one.names for one in interface.endpoints]
     for one in interface.flows:
         if one.flow is not None:
@@ -105,14 +105,14 @@ def undetermined(interface: Interface) -> bool:
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters; its flows have the fingerprints of a run without a launch file."""
+    """Return the interface for known parameters, with the usual fingerprints."""
     prints = {_ends(one): one.fingerprint for one in every.flows}
     flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
     return replace(decided, flows=tuple(flows))
 
 
 def with_names_in_code(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters that also has the names as written in the code."""
+    """Return the interface for known parameters, with the names in the code."""
     written = {(one.role, one.span): one.written for one in every.endpoints if one.written}
     ends = (replace(one, written=written.get((one.role, one.span), one.written)) for one in decided.endpoints)
     return replace(decided, endpoints=tuple(ends))
@@ -168,13 +168,13 @@ class _Namer:
         self._depth = 0
 
     def endpoint(self, one: Endpoint) -> Endpoint:
-        """Return an endpoint with the topic names that the launch file gives it; without names if one is unknown."""
+        """Return an endpoint with its launched topic names, if all are known."""
         if not any(MARK in name for name in one.names):
             return one
         return replace(one, names=self._names(one.names), written=tuple(map(self._in_code, one.names)))
 
     def finding(self, one: Finding) -> Finding:
-        """Return a finding whose topics have the names that the launch file gives them."""
+        """Return a finding with its launched topic names."""
         flow = one.flow
         if flow is None or not any(MARK in name for name in (*flow.source.topics, *flow.sink.topics)):
             return one
@@ -214,7 +214,7 @@ class _Namer:
         return None if one.default is None else self._deeper(one.default)
 
     def _deeper(self, text: str) -> str | None:
-        """Return a string in which each part is replaced by its value; a value may contain parts itself."""
+        """Return a string with each part replaced by its value."""
         if self._depth >= DEEPEST:
             return None
         self._depth += 1

@@ -32,7 +32,7 @@ PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"), (" (goa
 
 
 def part(api: str, *, sent: bool) -> str:
-    """Return the part of a service or action that an end of a flow is, such as ` (request)`; "" for a topic."""
+    """Return the part of a service that an end is, such as ` (request)`."""
     client = api.startswith(CLIENTS)
     if not client and not api.startswith(_SERVERS):
         return ""
@@ -43,7 +43,7 @@ def part(api: str, *, sent: bool) -> str:
 
 
 def called_services(outline: Outline) -> Iterator[tuple[ast.Call, str, str]]:
-    """Yield the calls that create a client, with the service's literal name and the last part of its type."""
+    """Yield the calls that create a client, with service name and type."""
     for calls in outline.calls.values():
         for call in calls:
             made = last_name(call.func)

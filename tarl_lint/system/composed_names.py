@@ -26,7 +26,7 @@ _MOST: Final = 500  # maximum number of functions whose callers are examined
 def composed_names(
     machine: Interpreter, modules: Sequence[Module], outlines: Mapping[str, Outline]
 ) -> frozenset[str] | None:
-    """Return the names of all parameters that a program reads or declares; None if some of them are unknown."""
+    """Return the names of all parameters of a program; None if some are unknown."""
     if machine.cut or any(OPEN.search(module.text) for module in modules):
         return None
     found: set[str] = set()
@@ -62,7 +62,7 @@ def _literal(call: ast.Call) -> frozenset[str] | None:
 def _reached_by_all(
     machine: Interpreter, modules: Sequence[Module], outlines: Mapping[str, Outline], composing: set[str]
 ) -> bool:
-    """Return whether the analysis has followed all calls of the functions, and all calls of their callers."""
+    """Return whether the analysis followed all calls of the functions."""
     entered: dict[str, set[_Place]] = {}
     for frame in machine.frames.values():
         if frame.caller is not None and frame.call_pos is not None:
@@ -94,7 +94,7 @@ def _reached_by_all(
 def _calls_of(
     qualname: str, modules: Sequence[Module], outlines: Mapping[str, Outline]
 ) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the calls that may call a function, found by its name; for `__init__`, by the name of the class."""
+    """Yield the calls that may call a function or a class's `__init__`."""
     *around, name = qualname.split(".")
     names = {name, around[-1]} if name == _INIT and around else {name}
     for module in modules:

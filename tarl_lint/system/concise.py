@@ -33,7 +33,7 @@ def concise(
 def github(
     systems: Sequence[System], result: Result, view: View, origin: str = "", target: str = ""
 ) -> Iterator[Line]:
-    """Yield the annotations of the hazards; flows across nodes have no line and appear only in the log."""
+    """Yield the annotations of the hazards; flows appear only in the log."""
     yield from pull_request.report(result, view)
     found = [shown_chains(system.hops, origin, target, view.most_flows) for system in systems]
     yield from flows(systems, found, view)

@@ -1,4 +1,4 @@
-"""Find the quality of service of publishers and subscriptions in C++, as far as literals in the calls state it."""
+"""Find the literal quality of service of C++ endpoints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CHANGES: Final = (
 
 
 def after_name(text: str, place: int) -> Qos | None:
-    """Return the quality of service in the argument after the topic's name. The name ends at a place of a file."""
+    """Return the quality of service after a topic's name in a file."""
     comma = re.compile(r"\s*,").match(text, place)
     return None if comma is None else _of(_argument(text, comma.end()), text)
 
@@ -49,7 +49,7 @@ def _of(argument: str, text: str) -> Qos | None:
 
 
 def _stated(value: str, *, declared: bool) -> Qos | None:
-    """Return the profile of an expression; with `declared`, the expression may be the depth of a declared profile."""
+    """Return the profile of an expression, or of a depth if `declared`."""
     if "SensorDataQoS" in value or "qos_profile_sensor_data" in value:
         return _changed(_SENSORS, value)
     if "SystemDefaultsQoS" in value or "ServicesQoS" in value or "from_rmw" in value:

@@ -1,4 +1,4 @@
-"""Find the types that a C++ package of the workspace may use in topics and services, without any analysis of its code.
+"""Find the types that a C++ package may use, without analysing it.
 
 A program can only use types that occur in its sources, or in the libraries of its workspace. Therefore all types
 are among the names in the C++ files of the package, and of the packages whose headers it includes. For libraries
@@ -49,7 +49,7 @@ _FOUND: dict[tuple[Path, int], frozenset[str] | None] = {}
 
 
 def used_types(package: Package, workspace: Workspace) -> frozenset[str] | None:
-    """Return a set of names that contains all types that C++ programs of a package may use; None if it is unknown."""
+    """Return a superset of the types that a package's C++ programs use, or None."""
     key = package.folder, len(workspace.packages)
     if key not in _FOUND:
         _FOUND[key] = _used(package, workspace)
@@ -79,7 +79,7 @@ def _used(package: Package, workspace: Workspace) -> frozenset[str] | None:
 
 @cache
 def _names(folder: Path) -> tuple[frozenset[str], frozenset[str]] | None:
-    """Return the capitalised names in C++ files, and the packages of the included headers; None for large packages."""
+    """Return the capitalised names and included packages of C++ files."""
     names: set[str] = set()
     packages: set[str] = set()
     files = sorted(path for path in folder.rglob("*") if path.suffix in _SUFFIXES and path.is_file())

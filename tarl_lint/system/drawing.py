@@ -61,7 +61,7 @@ def drawing(system: System, origin: str = "", target: str = "") -> Drawing:
 
 
 def drawing_of(system: System, only: Iterable[Chain] | None) -> Drawing:
-    """Return the picture of a system; with `only`, of the nodes and topics of these chains."""
+    """Return the picture of a system, or of the chains `only`."""
     drawn = _everything(system)
     return drawn if only is None else _between(drawn, only)
 
@@ -109,7 +109,7 @@ def _everything(system: System) -> Drawing:
 
 
 def layers(drawn: Drawing) -> list[list[str]]:
-    """Return the keys of boxes in columns from left to right, each after its predecessors as far as cycles allow."""
+    """Return the boxes in columns, each after its predecessors."""
     edges = [(start, end) for start, end, _ in drawn.edges()]
     every = [*(f"n {one}" for one in drawn.nodes), *(f"t {one}" for one in drawn.topics)]
     forward = _without_cycles(every, edges)
@@ -158,7 +158,7 @@ def _without_cycles(every: Iterable[str], edges: list[tuple[str, str]]) -> list[
 
 
 def _untangled(columns: list[list[str]], edges: list[tuple[str, str]]) -> list[list[str]]:
-    """Return the columns, each sorted by the mean height of a name's predecessors (Sugiyama et al. 1981)."""
+    """Sort each column by the mean height of the predecessors (Sugiyama et al. 1981)."""
     before: dict[str, list[str]] = {}
     for one, other in edges:
         before.setdefault(other, []).append(one)

@@ -1,4 +1,4 @@
-"""Find publishers through which a program repeats commands without input, such as a patrol that follows the clock."""
+"""Find publishers that repeat commands without input, such as a patrol."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def driven(
 
 
 def _moves(tree: ast.Module) -> bool:
-    """Return whether code sets a field of a command to a value other than zero."""
+    """Return whether code sets a command's field to a nonzero value."""
     for node in ast.walk(tree):
         match node:
             case ast.Assign(targets=targets, value=value):

@@ -38,12 +38,12 @@ _ROLES: Final[Mapping[str, tuple[Role, ...]]] = {
 
 
 def own_name(node: LaunchedNode) -> str:
-    """Return the name of a bridge to which the launch file gives no name; "" for other programs."""
+    """Return the default name of a bridge; "" for other programs."""
     return _OWN_NAMES.get(f"{node.package}/{node.executable}", "")
 
 
 def bridged(instance: Instance, values: Mapping[str, Any], workspace: Workspace) -> Seen | None:
-    """Return the topics and services of a bridge; None for other programs. `values` are its private parameters."""
+    """Return the topics and services of a bridge with parameters `values`, or None."""
     identity = f"{instance.node.package}/{instance.node.executable}"
     words = plain(instance.node.arguments, for_ros2=True)
     if identity in _IMAGES:
@@ -79,7 +79,7 @@ def _of_argument(text: str, instance: Instance) -> list[Endpoint] | None:
 
 
 def _entries(path: Any, workspace: Workspace) -> list[Any] | None:
-    """Return the entries of a YAML file; empty if the bridge has no file, None if the file is not in the workspace."""
+    """Return the entries of a bridge's YAML file; None if the file is unknown."""
     if path is None or path == "":
         return []
     if not isinstance(path, str) or "$(" in path or not Path(path).is_relative_to(workspace.root):
@@ -92,7 +92,7 @@ def _entries(path: Any, workspace: Workspace) -> list[Any] | None:
 
 
 def _of_entry(entry: Any, instance: Instance) -> Iterator[Endpoint]:
-    """Yield the ends of an entry of the YAML file; none if the bridge refuses the entry."""
+    """Yield the ends of a YAML entry; none for an invalid entry."""
     if not isinstance(entry, dict):
         return
     both, ros, gazebo = (

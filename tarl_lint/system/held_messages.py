@@ -37,7 +37,7 @@ class Held(NamedTuple):
 
 
 class _Value(NamedTuple):
-    """The value of a name: an expression, or an element of the expression's list; None if it is unknown."""
+    """The expression of a name, or one of its list elements; None if unknown."""
 
     expr: ast.expr | None
     element: bool = False
@@ -184,7 +184,7 @@ class HeldMessages:
         return self._found[key]
 
     def _class_of(self, expr: ast.Attribute) -> ast.ClassDef | None:
-        """Return the class of `self`, if the expression is an attribute of `self` that only the class's methods set."""
+        """Return the class of an attribute of `self` that only this class sets."""
         own = isinstance(expr.value, ast.Name) and expr.value.id == "self"
         if not own or not self._foreign.isdisjoint((expr.attr, _ANY)):
             return None
@@ -196,7 +196,7 @@ class HeldMessages:
         return None if key is None else self._common(key, self._attributes.get(key, []), depth)
 
     def _arguments(self, function: _Function, given: set[tuple[str, int]], heard: Heard) -> dict[str, Held]:
-        """Return the messages in a function's arguments, known from callbacks, the analysis, or annotations."""
+        """Return the messages among a function's arguments."""
         by_number: dict[int, set[str]] = {}
         for kind, number in given:
             by_number.setdefault(number, set()).add(kind)

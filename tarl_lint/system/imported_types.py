@@ -14,7 +14,7 @@ PARTS: Final = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
 def path(node: ast.expr) -> tuple[str, tuple[str, ...]]:
-    """Return the variable at the beginning of an attribute, and the names after it; "" for another expression."""
+    """Return the variable of an attribute and the names after it; "" for others."""
     parts: list[str] = []
     expr = node
     while isinstance(expr, ast.Attribute):
@@ -24,7 +24,7 @@ def path(node: ast.expr) -> tuple[str, tuple[str, ...]]:
 
 
 def short(whole: str) -> str:
-    """Return the name of a type `package/Name` or `package/Name.Part`, without its package if the fields are known."""
+    """Return the name of a type, without its package if its fields are known."""
     package, _, name = whole.partition("/")
     return name if name in PACKAGES.get(package, ()) else whole
 
@@ -62,7 +62,7 @@ class ImportedTypes:
             self.ros = "1" if "rospy" in found else "2"
 
     def _import(self, local: str, kind: str) -> None:
-        """Store the type of a name. If a name stands for one of several types, its type is unknown."""
+        """Store the type of a name; it becomes unknown if there are several."""
         self._classes[local] = kind if self._classes.get(local, kind) == kind else ""
 
     @property

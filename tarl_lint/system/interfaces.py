@@ -161,7 +161,7 @@ def _of_topics(flow: Flow) -> bool:
 
 
 def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Finding:
-    """Return a flow with the fingerprint that the flow has in a run without launch files."""
+    """Return a flow with its fingerprint from a run without launch files."""
     names = config.launched
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:
@@ -209,7 +209,7 @@ def _profile(
 
 
 def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) -> Iterator[Endpoint]:
-    """Yield the services and actions that a module calls in functions that run; names may be computed."""
+    """Yield the services and actions that a module calls."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
     made = _made(machine, "service", [module.path])
     asking = _made(machine, "action", [module.path])
@@ -254,7 +254,7 @@ def _made(machine: Linker, kind: str, paths: Collection[str]) -> dict[tuple[str,
 
 
 def imported_type(tree: ast.Module, name: str) -> str:
-    """Return `package/Name` of a type of services or actions that a module imports by its own name; else ""."""
+    """Return `package/Name` of an imported service or action type; else ""."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
             package, _, rest = node.module.partition(".")
@@ -264,7 +264,7 @@ def imported_type(tree: ast.Module, name: str) -> str:
 
 
 def _by_topics(publishers: Sequence[Publisher]) -> Iterable[list[Publisher]]:
-    """Return the publishers of one place in groups with the same topics. The place may be in a wrapper."""
+    """Return the publishers of one place, grouped by their topics."""
     groups: dict[frozenset[str], list[Publisher]] = {}
     for one in publishers:
         groups.setdefault(frozenset(map(str, one.topics)), []).append(one)

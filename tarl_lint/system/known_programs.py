@@ -103,7 +103,7 @@ _TRANSPORTED: Final[Mapping[str, str]] = {":": IMAGE, "@": CAMERA}
 
 
 def stated(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
-    """Return the topics of a program in the table; empty for unknown programs. `values` are its parameters."""
+    """Return the topics of a known program with parameters `values`."""
     joints = _of_joints(instance, values)
     if joints is not None:
         return joints
@@ -123,7 +123,7 @@ def stated(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen
 
 
 def _of_joints(instance: Instance, values: Mapping[str, Any]) -> Seen | None:
-    """Return the topics of the programs that publish or need joint states; None for other programs."""
+    """Return the topics of joint state programs; None for others."""
     package, program = instance.node.package, instance.node.executable.removesuffix(".py")
     span = place_of(instance)
     if package == "robot_state_publisher":
@@ -163,7 +163,7 @@ def _identity(node: LaunchedNode, *, ros2: bool) -> str:
 
 
 def _belongs(old: str, names: set[str]) -> bool:
-    """Return whether a renamed topic is one of the names, or belongs to one as a transport or camera topic."""
+    """Return whether a renamed topic belongs to one of the names."""
     name = old.lstrip("/")
     parts = {name, name.rpartition("/")[0], name.replace("~/", "~")}
     return not parts.isdisjoint(names) or name.endswith("camera_info")

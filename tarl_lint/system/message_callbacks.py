@@ -1,4 +1,4 @@
-"""The types of messages, requests and goals that functions receive from subscriptions, servers and synchronizers."""
+"""The types of messages, requests and goals that functions receive."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ HANDLE: Final = "@"  # end of the type of a goal handle, whose `request` is the 
 
 
 def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str, int]]]:
-    """Return function name → the types of the objects that the function receives, with positions; "" if unknown."""
+    """Return function name → the positions and types of received objects."""
     found: dict[str, set[tuple[str, int]]] = {}
     for call in _calls(tree):
         for callback, kinds in _registered(call, types):
@@ -36,7 +36,7 @@ def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str,
 
 
 def received_by_lambdas(tree: ast.Module, types: ImportedTypes) -> dict[ast.Lambda, tuple[str, ...]]:
-    """Return the lambda functions that are callbacks, with the types of the objects that they receive."""
+    """Return the callback lambdas with the types of received objects."""
     calls = _calls(tree)
     pairs = (pair for call in calls for pair in _registered(call, types))
     return {callback: kinds for callback, kinds in pairs if isinstance(callback, ast.Lambda)}
@@ -47,7 +47,7 @@ def _calls(tree: ast.Module) -> list[ast.Call]:
 
 
 def _registered(call: ast.Call, types: ImportedTypes) -> Iterator[tuple[ast.expr, tuple[str, ...]]]:
-    """Yield the callback that a call registers, with the types of the objects that the callback receives."""
+    """Yield a registered callback with the types of received objects."""
     places = _REGISTERS.get(last_name(call.func))
     if places is None:
         return
@@ -90,7 +90,7 @@ def _synchronized(tree: ast.Module, types: ImportedTypes) -> dict[str, list[str]
 def _of_filters(
     filters: ast.expr | None, assigned: Mapping[str, list[ast.expr]], types: ImportedTypes
 ) -> list[str]:
-    """Return the types of a list of filters, which a comprehension over a table may make."""
+    """Return the types of a list of filters."""
     if isinstance(filters, ast.List | ast.Tuple):
         return [_filtered(_only(one, assigned), types) for one in filters.elts]
     if not isinstance(filters, ast.ListComp) or len(filters.generators) != 1:
@@ -132,7 +132,7 @@ def _class_of(made: ast.Call) -> ast.expr | None:
 
 
 def _called(callback: ast.expr) -> tuple[str, int]:
-    """Return the name of the function that a callback calls, and the position of the message among its arguments."""
+    """Return the function that a callback calls, and the message's position."""
     match callback:
         case ast.Call(func=func, args=[function, *given]) if last_name(func) == "partial":
             return last_name(function), len(given)

@@ -131,7 +131,7 @@ class Seen:
         return kind in self.kinds if self.kinds is not None else kind not in self.never
 
     def may_offer(self, kind: str, names: Sequence[str], texts: Iterable[str]) -> bool:
-        """Return whether the node may use a type under one of these names. `texts` are the values that it receives."""
+        """Return whether the node may use a type under a name, given its values `texts`."""
         if not self.may_use(kind):
             return False
         return self.words is None or any(offered(one, self.words) for one in names) or mention(texts, names)
@@ -161,7 +161,7 @@ class Instance:
 
     @property
     def seen(self) -> tuple[Endpoint, ...]:
-        """Return the endpoints that are known of a node that could not be read."""
+        """Return the known endpoints of an unread node."""
         return self.known.ends
 
     @property
@@ -177,7 +177,7 @@ class Instance:
         return self.silent or (self.known.certain if self.interface is None else self.interface.whole)
 
     def may_use(self, kind: str) -> bool:
-        """Return whether the node may have an unknown endpoint of a type of messages or services."""
+        """Return whether the node may have an unknown endpoint of a type."""
         if self.whole:
             return False
         if self.interface is None:
@@ -194,11 +194,11 @@ class Instance:
         return offered(name, self.known.words)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role by launched name; an endpoint with an unknown name is left out."""
+        """Yield a role's endpoints with known names, as launched."""
         yield from self._launched(self.certain, role)
 
     def named(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role. For an unread node, its C++ source or its arguments name them."""
+        """Yield a role's endpoints, also those of an unread node."""
         yield from self._launched(self.seen if self.interface is None else self.certain, role)
 
     def _launched(self, ends: Iterable[Endpoint], role: Role) -> Iterator[tuple[str, Endpoint]]:
@@ -236,13 +236,13 @@ class Hop:
 
 @dataclass(frozen=True)
 class Chain:
-    """A flow across nodes: hops, each of which begins where the previous one ends."""
+    """A flow across nodes: a chain of hops."""
 
     hops: tuple[Hop, ...]
 
     @property
     def kind(self) -> Kind | Literal["not read"]:
-        """Return `explicit` if all hops are explicit, and `not read` if any node of the chain was not read."""
+        """Return `explicit`, `implicit`, or `not read` if a node was not read."""
         kinds = {hop.kind for hop in self.hops}
         return "not read" if "not read" in kinds else "implicit" if "implicit" in kinds else "explicit"
 
@@ -312,7 +312,7 @@ class System:
 
 
 def mention(texts: Iterable[str], names: Iterable[str]) -> bool:
-    """Return whether one of the texts contains the last part of one of the names, as a word."""
+    """Return whether a text contains the last part of a name, as a word."""
     lasts = "|".join(re.escape(name.rpartition("/")[2]) for name in names)
     word = re.compile(rf"(?<!\w)(?:{lasts})(?!\w)")
     return any(word.search(text) for text in texts)

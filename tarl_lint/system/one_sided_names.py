@@ -1,4 +1,4 @@
-"""Topics, services and actions of a launch file that nodes subscribe to, call or ask for, but none offers."""
+"""Topics, services and actions that nodes use, but none offers."""
 
 from __future__ import annotations
 

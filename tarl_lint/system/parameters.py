@@ -1,4 +1,4 @@
-"""The strings of a program, which include the names of its parameters. Also: whether it reads other parameters."""
+"""The strings of a program, which include its parameter names."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def words(modules: Sequence[Module]) -> frozenset[str]:
 
 
 def private_words(modules: Sequence[Module]) -> frozenset[str]:
-    """Return the words that occur in the strings of a program only in private names, such as `~path`."""
+    """Return the words that occur only in private names, such as `~path`."""
     texts = {text for module in modules for node in ast.walk(module.tree) for text in _texts(node)}
     own = {one.strip("~/") for one in texts if one.startswith("~")}
     return frozenset(own - {one.strip("/").lstrip(".") for one in texts if not one.startswith("~")})
@@ -99,7 +99,7 @@ def scopes(modules: Sequence[Module]) -> tuple[frozenset[str], frozenset[str]]:
 
 
 def reads_named_parameters(modules: Sequence[Module]) -> bool:
-    """Return whether a program states all names of parameters that it reads: literally, in tables, or as arguments."""
+    """Return whether a program states the names of all its parameters."""
     if any(OPEN.search(module.text) for module in modules):
         return False
     outlines = [Outline(module.tree) for module in modules if any(one in module.text for one in READERS)]
@@ -132,7 +132,7 @@ def configurations(modules: Sequence[Module]) -> tuple[str, ...] | None:
 
 
 def _stated(call: ast.Call, outline: Outline, strings: OwnStrings) -> bool:
-    """Return whether a call reads or declares only parameters whose names the program states."""
+    """Return whether a call uses only parameters with stated names."""
     several = last_name(call.func) == "declare_parameters"
     named = {one.arg: one.value for one in call.keywords if one.arg}
     if several:
@@ -149,7 +149,7 @@ def _stated(call: ast.Call, outline: Outline, strings: OwnStrings) -> bool:
 
 
 def _group(argument: ast.expr) -> bool:
-    """Return whether an argument is a literal name of a whole group (`~` or `/`), or is no name at all."""
+    """Return whether an argument is no name or a whole group (`~` or `/`)."""
     if not isinstance(argument, ast.Constant):
         return False
     return not isinstance(argument.value, str) or argument.value.rstrip("/") in ("", "~")
@@ -182,7 +182,7 @@ def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
 
 
 def _assigned(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
-    """Yield the assigned variables, by the last part of their names, with their values."""
+    """Yield the last part of each assigned name, with its value."""
     for node in nodes:
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
             for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
@@ -190,7 +190,7 @@ def _assigned(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _passed(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
-    """Yield the parameters of the program's functions, each with the arguments that calls of that name pass."""
+    """Yield each function parameter with the arguments passed for it."""
     made: dict[str, list[str]] = {}
     for node in nodes:
         if isinstance(node, ast.FunctionDef):
@@ -208,7 +208,7 @@ def _passed(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _copies(value: ast.expr) -> bool:
-    """Return whether an expression is a variable, its negation, or a conversion of one."""
+    """Return whether an expression is a variable, possibly negated or converted."""
     if isinstance(value, ast.UnaryOp):
         return _copies(value.operand)
     if isinstance(value, ast.Call):

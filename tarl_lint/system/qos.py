@@ -1,4 +1,4 @@
-"""Find the quality of service of rclpy publishers and subscriptions, as far as it is constant."""
+"""Find the constant quality of service of rclpy endpoints."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _given(call: ast.Call) -> ast.expr | None:
 def _through(
     call: ast.Call, outline: Outline, where: Outline, made: ast.Call, others: Collection[Outline]
 ) -> Qos | None:
-    """Return the quality of service of a subscription that another function, a wrapper, makes when it is called."""
+    """Return the quality of service of a subscription made by a wrapper."""
     given = _given(made)
     found = None if given is None else _anywhere(given, where, others)
     function = _function_around(made, where)
@@ -99,7 +99,7 @@ def _function_around(node: ast.AST, outline: Outline) -> ast.FunctionDef | None:
 
 
 def _argument(call: ast.Call, function: ast.FunctionDef, name: str) -> ast.expr | None:
-    """Return the argument that a call passes for a parameter of a function or method; None if it is not known."""
+    """Return the argument of a call for a parameter; None if unknown."""
     plain = [one.arg for one in function.args.args]
     given = next((word.value for word in call.keywords if word.arg == name), None)
     if given is not None or any(isinstance(one, ast.Starred) for one in call.args):
@@ -112,7 +112,7 @@ def _argument(call: ast.Call, function: ast.FunctionDef, name: str) -> ast.expr 
 
 
 def _anywhere(expr: ast.expr, outline: Outline, others: Collection[Outline]) -> Qos | None:
-    """Return the quality of service of an expression; its name or function may come from another module."""
+    """Return the quality of service of an expression."""
     found = _of(expr, outline, 0)
     name = last_name(expr.func if isinstance(expr, ast.Call) else expr)
     if found is None and name not in outline.assigned and not _functions(name, outline):
@@ -124,7 +124,7 @@ def _anywhere(expr: ast.expr, outline: Outline, others: Collection[Outline]) -> 
 
 
 def _beside(topics: Collection[str], outline: Outline, others: Collection[Outline]) -> Qos | None:
-    """Return the only quality of service that is beside a topic in a row of a table, or in the arguments of a call."""
+    """Return the only quality of service beside a topic in a row or call."""
     found = [
         [one for part in row if (one := _anywhere(part, where, others)) is not None]
         for where in (outline, *(one for one in others if one is not outline))
@@ -147,7 +147,7 @@ def _either(one: Qos | None, other: Qos | None) -> Qos | None:
 
 
 def _passed(name: str, call: ast.Call, outline: Outline, others: Collection[Outline]) -> Qos | None:
-    """Return the only quality of service that calls pass for a parameter of the function around a call."""
+    """Return the only quality of service that calls pass for a parameter."""
     function = _function_around(call, outline)
     if function is None or name not in [one.arg for one in (*function.args.args, *function.args.kwonlyargs)]:
         return None
@@ -164,7 +164,7 @@ def _functions(name: str, outline: Outline) -> list[ast.FunctionDef]:
 
 
 def _returned(call: ast.Call, outline: Outline, depth: int) -> Qos | None:
-    """Return the profile that the only function of a name returns, if it does not depend on its arguments."""
+    """Return the constant profile that a function returns."""
     functions = _functions(last_name(call.func), outline)
     returned = [
         one.value for each in functions for one in ast.walk(each) if isinstance(one, ast.Return) and one.value
@@ -219,7 +219,7 @@ def _preset(expr: ast.expr) -> str:
 
 
 def _table(expr: ast.expr, outline: Outline) -> dict[str, ast.expr] | None:
-    """Return the entries of a mapping, or of a variable that holds one; None if they are not known."""
+    """Return the entries of a mapping; None if unknown."""
     if isinstance(expr, ast.Name | ast.Attribute):
         values = outline.assigned.get(last_name(expr), [])
         return (
@@ -259,7 +259,7 @@ def _policy(expr: ast.expr | None, otherwise: str) -> str:
 
 
 def _changed(qos: Qos, outline: Outline, name: str) -> Qos:
-    """Return a profile whose policies are set after its creation. If a policy is set several times, it is unknown."""
+    """Return a profile with the policies that are set once after its creation."""
     stated: dict[str, list[ast.expr]] = {}
     for node in ast.walk(outline.tree):
         if isinstance(node, ast.Assign):

@@ -1,4 +1,4 @@
-"""Find what the driver of a sensor may offer: the types of its messages and services, and the words of their names.
+"""Find the types and names that a sensor driver may use.
 
 A driver is known by its package, or by a word such as `lidar` in the name of its package or program. The types and
 words are those of common drivers of the same sensor. A driver of a laser scanner may publish `rear/scan` or
@@ -129,7 +129,7 @@ _EMPTY: Final = frozenset(
 
 
 def sensors(package: str, program: str) -> tuple[Sensor, ...]:
-    """Return the kinds of sensors for which a program is the driver, judged by its package or names; empty if none."""
+    """Return the kinds of sensors that a program drives; empty if none."""
     known = tuple(one for one in SENSORS if package in one.packages)
     if known or _PROCESSING.search(f"{package}/{program}".lower()):
         return known
@@ -143,23 +143,23 @@ def _signs(package: str, program: str) -> frozenset[str]:
 
 
 def driver_types(package: str, program: str) -> frozenset[str] | None:
-    """Return the types that a driver of a sensor may use; None if its sensor is unknown."""
+    """Return the types that a sensor driver may use; None if its sensor is unknown."""
     found = sensors(package, program)
     return frozenset(_TYPES.union(*(one.types for one in found))) - _NEVER if found else None
 
 
 def driver_words(package: str, program: str) -> frozenset[str] | None:
-    """Return the words of the names that a driver gives topics and services; None if its sensor is unknown."""
+    """Return the words in a driver's topic names; None if its sensor is unknown."""
     found = sensors(package, program)
     own = words(package) | words(program)
     return _WORDS.union(own - _EMPTY, *(one.words for one in found)) if found else None
 
 
 def unused_types(package: str, program: str) -> frozenset[str]:
-    """Return types that a program does not use: for example, the driver of a sensor sends no commands."""
+    """Return types that a program never uses, such as a driver's commands."""
     return frozenset(_NEVER) if _signs(package, program) else frozenset()
 
 
 def offered(name: str, vocabulary: Iterable[str]) -> bool:
-    """Return whether the last part of a topic's name has only words of a vocabulary."""
+    """Return whether a topic's last part has only known words."""
     return words(name.rpartition("/")[2]) <= frozenset(vocabulary)

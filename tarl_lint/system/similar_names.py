@@ -1,4 +1,4 @@
-"""Decide which absolute names of topics and services may be meant to be equal."""
+"""Decide which topic and service names may be meant to be equal."""
 
 from __future__ import annotations
 
@@ -62,13 +62,13 @@ def misspelt(one: str, other: str) -> bool:
 
 
 def _abbreviated(one: str, other: str) -> bool:
-    """Return whether two names have the same words, where one of the names may abbreviate some of them."""
+    """Return whether two names have the same words, perhaps abbreviated."""
     pairs = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(a == b or _shortened(*sorted((a, b), key=len)) for a, b in pairs)
 
 
 def _shortened(short: str, long: str) -> bool:
-    """Return whether a word abbreviates another one: its beginning (`vel`), or some of its consonants (`cmd`)."""
+    """Return whether a word abbreviates another one, such as `vel` or `cmd`."""
     if len(short) < 3 or not long.isalpha():
         return False
     rest = iter(long[1:])
@@ -78,7 +78,7 @@ def _shortened(short: str, long: str) -> bool:
 
 
 def under_own_name(name: str, other: str, them: Instance) -> bool:
-    """Return whether `other` is a private name, and `name` is the same name with the node's name in the code."""
+    """Return whether `other` is `name` as a private name of a node."""
     own = them.interface.name if them.interface is not None else ""
     rest = other.removeprefix(f"{them.name}/")
     above, _, last = them.name.rpartition("/")
@@ -86,7 +86,7 @@ def under_own_name(name: str, other: str, them: Instance) -> bool:
 
 
 def in_private_names(one: str, other: str, *nodes: Instance) -> bool:
-    """Return whether two names are private names of the same node, which is one of the given nodes."""
+    """Return whether two names are private names of one of the nodes."""
     above, beyond = one.rpartition("/")[0], other.rpartition("/")[0]
     return one != other and above == beyond and above in [node.name for node in nodes]
 
@@ -107,7 +107,7 @@ def _squeezed(name: str) -> str:
 
 
 def _within(few: list[str], many: list[str]) -> bool:
-    """Return whether another namespace contains all parts of this namespace, in the same order."""
+    """Return whether a namespace contains all parts of another one, in order."""
     rest = iter(many)
     return all(part in rest for part in few)
 
@@ -124,7 +124,7 @@ def _namespace_apart(few: list[str], many: list[str]) -> bool:
 
 
 def _exchanged(one: str, other: str) -> bool:
-    """Return whether two adjacent letters of a name are exchanged in another name of at least four letters."""
+    """Return whether names of four or more letters differ by two exchanged letters."""
     if len(one) != len(other) or len(one) < 4:
         return False
     places = [i for i, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]

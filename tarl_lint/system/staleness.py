@@ -1,4 +1,4 @@
-"""Find publish calls that continue when messages stop, in loops and timers that never check the age of a message."""
+"""Find publish calls that continue after the messages stop."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class Program:
         )
 
     def _stored(self, flow: Flow, storing: set[str]) -> set[str]:
-        """Return the attributes, globals and elements of tables in which these functions store the message."""
+        """Return the attributes, globals and table elements that store the message."""
         found: set[str] = set()
         for step in flow.steps:
             name = re.match(r"(self\.\w+|\w+)\s*(\[[^\]]*\])*(\.\w+)*\s*=(?!=)", step.code)
@@ -146,7 +146,7 @@ class Program:
         return any(isinstance(one, ast.Global | ast.Nonlocal) and name in one.names for one in nodes)
 
     def repeats(self, name: str, path: str, line: int) -> bool:
-        """Return whether a timer or a loop runs a line of a function, directly or through other functions."""
+        """Return whether a timer or loop runs a line of a function."""
         if any(one.lineno <= line <= (one.end_lineno or 0) for one in self._ticks) or self._looped(
             name, path, line
         ):
@@ -185,7 +185,7 @@ class Program:
         return self._reached(found)
 
     def _reached(self, found: set[str]) -> set[str]:
-        """Return functions, together with all functions that they may call or read as properties."""
+        """Return functions and all functions that they may call."""
         pending = [*found]
         while pending:
             fresh = (self._named.get(pending.pop(), set()) & self._functions.keys()) - found
@@ -201,7 +201,7 @@ class Program:
         return False
 
     def _text(self, path: str, function: _Function | ast.Module) -> str:
-        """Return the text of a function; for a module, the text of its loops."""
+        """Return the text of a function, or of a module's loops."""
         lines = self._texts[path].split("\n")
         if isinstance(function, _Function):
             return "\n".join(lines[function.lineno - 1 : function.end_lineno])
@@ -209,7 +209,7 @@ class Program:
         return "\n".join("\n".join(lines[one.lineno - 1 : one.end_lineno]) for one in loops)
 
     def _cleared(self, name: str, running: set[str]) -> bool:
-        """Return whether code sets a stored value to None, or changes it repeatedly without a message."""
+        """Return whether code resets a stored value without a message."""
         for where, functions in self._functions.items():
             if where in _SETUP or where == "":
                 continue
@@ -236,7 +236,7 @@ def _word(name: str) -> str:
 
 
 def _own(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function or module, except the nodes of functions inside it."""
+    """Yield the nodes of a function, except those of inner functions."""
     for child in ast.iter_child_nodes(function):
         if not isinstance(child, _Function):
             yield child
@@ -244,7 +244,7 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
 
 
 def _changes(function: ast.AST) -> Iterator[tuple[ast.expr, ast.expr | None]]:
-    """Yield the targets that a function changes, each with its new value; None for a change in place or a removal."""
+    """Yield the changed targets with their new values; None for a change in place."""
     for node in ast.walk(function):
         match node:
             case ast.Assign(targets=targets, value=value):
@@ -262,7 +262,7 @@ def _changes(function: ast.AST) -> Iterator[tuple[ast.expr, ast.expr | None]]:
 
 
 def _reset(value: ast.expr | None) -> bool:
-    """Return whether a value is a constant, or a new object without arguments; None stands for a change in place."""
+    """Return whether a value is a constant or a new object without arguments."""
     if isinstance(value, ast.Call):
         return not value.args and not value.keywords and isinstance(value.func, ast.Name)
     return value is None or isinstance(value, ast.Constant)

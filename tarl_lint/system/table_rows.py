@@ -1,4 +1,4 @@
-"""Rows of tables, and arguments of calls, that contain a topic together with its type and profile.
+"""Table rows and call arguments that contain a topic with its type.
 
 The analysis joins the elements of a table, so a loop over a table gives all topics all types. The rows separate them.
 """
@@ -23,7 +23,7 @@ def rows(topics: Collection[str], outline: Outline) -> Iterator[list[ast.expr]]:
 
 
 def _rows(node: ast.AST) -> Iterator[list[ast.expr]]:
-    """Yield the elements of a tuple or list, the arguments of a call, or the entries and the values of a mapping."""
+    """Yield the elements of a list, a call or a mapping."""
     if isinstance(node, ast.Tuple | ast.List):
         yield node.elts
     elif isinstance(node, ast.Call):
@@ -36,7 +36,7 @@ def _rows(node: ast.AST) -> Iterator[list[ast.expr]]:
 
 
 def separated(end: Endpoint, whole_types: Collection[str], outlines: Collection[Outline]) -> list[Endpoint]:
-    """Return an endpoint with several topics and types as one endpoint per topic, if the rows give the types of all."""
+    """Return one endpoint per topic, if the rows give all types."""
     kinds = end.type.split(" | ")
     if len(end.names) < 2 or len(kinds) < 2:
         return [end]

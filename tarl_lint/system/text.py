@@ -97,7 +97,7 @@ def _system(
 
 
 def _nothing(system: System, origin: str, target: str) -> str:
-    """Return a message that there is no chain, with the requested topics that do not exist."""
+    """Return the message that there is no chain between the topics."""
     if not (origin or target):
         return "No flows across nodes."
     known = {name for one in system.instances for role in _ROLES for name, _ in one.named(role)}
@@ -128,7 +128,7 @@ def _table(system: System, glyphs: Glyphs) -> Iterator[Line]:
 
 
 def _row(instance: Instance, glyphs: Glyphs) -> tuple[str, ...]:
-    """Return the cells of a node. If the node was not read, the last cell is the reason."""
+    """Return the cells of a node; for an unread node, with the reason."""
     node = instance.node
     where = f"{node.package}/{node.executable}" if node.package else node.executable
     name = f"{instance.name} ({node.condition})" if node.condition else instance.name

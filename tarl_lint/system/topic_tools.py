@@ -49,7 +49,7 @@ _CHOOSING: Final[Mapping[str, str]] = {
 
 
 def passed_on(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
-    """Return the topics of a program of topic_tools; nothing for other programs. `values` are its parameters."""
+    """Return the topics of a program of topic_tools with parameters `values`."""
     node = instance.node
     program = _program(instance, ros2=ros2)
     if not program:
@@ -76,7 +76,7 @@ def passed_on(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> S
 
 
 def _program(instance: Instance, *, ros2: bool) -> str:
-    """Return the name of a program; of a component `topic_tools::RelayNode`, the name of the same program."""
+    """Return the program that has the code of a component, or the name itself."""
     node = instance.node
     if node.package != "topic_tools":
         return ""
@@ -112,7 +112,7 @@ def _texts(value: Any) -> list[str]:
 
 
 def _choice(program: str, outputs: Sequence[str], above: str, span: Span) -> Iterator[Endpoint]:
-    """Yield the services of `mux` and `demux` that choose the topic. Their names begin with the namespace `above`."""
+    """Yield the services of `mux` and `demux` below the namespace `above`."""
     kind = _CHOOSING.get(program)
     if kind is None:
         return

@@ -83,7 +83,7 @@ class ServerGoalHandle:
         self._end(after, "a succeeded", "active or preempting", result, text)
 
     def set_cancel_requested(self) -> bool:
-        """Note a cancel request. Return whether the request has an effect: only if the goal is waiting or running."""
+        """Note a cancel request; return whether it affects a goal."""
         after = {protocol.PENDING: protocol.RECALLING, protocol.ACTIVE: protocol.PREEMPTING}.get(self._status)
         if after is None:
             return False

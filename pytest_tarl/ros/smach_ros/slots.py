@@ -27,7 +27,7 @@ def build(
     slots: Sequence[str],
     callback: tuple[Callable[..., Any] | None, Sequence[Any], Mapping[str, Any]],
 ) -> Any:
-    """Return userdata[key] or a copy of `message`, with its `slots` from userdata; a callback may replace it."""
+    """Return the message for the slots; a callback may replace it."""
     made = ud[key] if key is not None else deepcopy(message)
     for slot in slots:
         setattr(made, slot, ud[slot])
@@ -39,7 +39,7 @@ def build(
 
 
 def view(state: State, ud: Any, callback: Any) -> Any:
-    """Return the userdata that a callback sees: the keys that the callback declares, or else the keys of the state."""
+    """Return the userdata with the keys of a callback, or else of the state."""
     read = getattr(callback, "_smach_input_keys", state.get_registered_input_keys())
     written = getattr(callback, "_smach_output_keys", state.get_registered_output_keys())
     return Remapper(ud, read, written)
