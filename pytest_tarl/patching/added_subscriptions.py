@@ -1,4 +1,4 @@
-"""Subscriptions that a repair adds to a node so that a guard can read a sensor to which it does not subscribe yet."""
+"""Subscriptions that a repair adds to read a sensor."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NODE_ATTRIBUTES = {
 
 @dataclass
 class Subscription:
-    """A subscription to add: its place, and the variables that store fields of its messages."""
+    """A subscription to add, with its place and the variables that it sets."""
 
     topic: str
     type: str
@@ -41,7 +41,7 @@ class Subscription:
 
 
 class Subscriptions:
-    """The subscriptions that one rewrite of a node adds. They are collected while the guards are written."""
+    """The subscriptions that one rewrite of a node adds."""
 
     def __init__(self, analysis: Analysis, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -50,7 +50,7 @@ class Subscriptions:
         self._taken: dict[tuple[str, bool], set[str]] = {}
 
     def reading(self, sensor: Sensor, site: SiteId, source: Document, place: ast.AST) -> Reading:
-        """Return the expression for a sensor's value at a place. Raise RepairError if no subscription provides it."""
+        """Return the expression for a sensor's value at a place. Raise RepairError."""
         subscription = self._subscription(sensor.topic or "", site, source, place)
         wanted = sensor.path
         if wanted not in subscription.names:
@@ -81,7 +81,7 @@ class Subscriptions:
         return edits
 
     def _subscription(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> Subscription:
-        """Return a subscription whose values can be read at a place; add one if necessary. Raise RepairError."""
+        """Return or add a subscription that is readable at a place. Raise RepairError."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
             same = each.store.source is source and each.store.owner is store.owner
@@ -96,7 +96,7 @@ class Subscriptions:
         return self._added[-1]
 
     def _reach(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> tuple[Anchor, Store]:
-        """Return where to subscribe and where to store values that can be read at a place. Raise RepairError."""
+        """Return where to subscribe and where to store values. Raise RepairError."""
         seen: Anchor | None = None
         for anchor in anchors(self._analysis, site, source.path):
             seen = seen or anchor
@@ -112,7 +112,7 @@ class Subscriptions:
         raise RepairError(_unreachable(topic, source, place, seen))
 
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
-        """Return the call that subscribes, and the name of the message type in this call; append the needed imports."""
+        """Return the subscribing call and its message type; append the imports."""
         source = each.anchor.source
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
@@ -131,7 +131,7 @@ class Subscriptions:
         return f"{subscriber}({topic}, {kind}, {target})", kind
 
     def _target(self, each: Subscription, callback: str, imports: list[Import]) -> str:
-        """Return the expression for the callback in the call that subscribes; append the needed imports."""
+        """Return the callback of the subscribing call; append the imports."""
         here = each.anchor.source.method(each.anchor.statement)
         if each.store.owner is not None and here is not None:
             return f"{here[2]}.{callback}"
@@ -148,7 +148,7 @@ class Subscriptions:
         return self._fresh(each.store, base, each.anchor.source)
 
     def _fresh(self, store: Store, base: str, *elsewhere: Document) -> str:
-        """Return a name that is unused in the modules that store or import it, and reserve the name there."""
+        """Reserve and return a name that the modules do not use."""
         attribute = store.owner is not None
         known = [self._names(store.source, attribute)]
         if not attribute:
@@ -166,7 +166,7 @@ class Subscriptions:
         return self._taken[key]
 
     def _attributes(self, source: Document) -> set[str]:
-        """Return all attributes that a class may have: those of all analysed classes and of rclpy nodes."""
+        """Return all attributes of the analysed classes and of rclpy nodes."""
         names = set(_NODE_ATTRIBUTES)
         for path in self._analysis.sources:
             with suppress(RepairError):  # a file that cannot be parsed contributes no names
@@ -178,7 +178,7 @@ class Subscriptions:
 
 
 def _store(anchor: Anchor, source: Document, place: ast.AST) -> Store:
-    """Return where to store values: on the instance if subscription and use are in one class, else in the module."""
+    """Return where to store values: on the instance or in the module."""
     there, here = source.method(anchor.statement), source.method(place)
     same = there is not None and here is not None and there[0] is here[0]
     return Store(source, here[0], here[2]) if same and here else Store(source)

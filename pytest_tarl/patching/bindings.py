@@ -1,4 +1,4 @@
-"""Bindings of a module: the places that assign a name, and the values that it may have before the first message."""
+"""Bindings of a module: the assignments of a name and its early values."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def bindings(source: Document) -> tuple[Binding, ...]:
 
 
 def scope(source: Document, place: ast.AST, name: str) -> Scope | None:
-    """If a name at a place is local to a function or lambda, return this function or lambda, else None."""
+    """Return the function or lambda to which a name is local, else None."""
     for around in source.ancestors(place):
         if isinstance(around, Scope) and name in local_names(source, around):
             return around
@@ -63,7 +63,7 @@ def local_names(source: Document, function: Scope) -> frozenset[str]:
 
 
 def is_bound(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether `a.b.c` can be evaluated at a place. It can if the original code already evaluates it there."""
+    """Return whether `a.b.c` can be evaluated at a place."""
     chain = prefixes(code)
     read = {ast.unparse(node) for node in _read_at(place)}
     if code in read:
@@ -74,7 +74,7 @@ def is_bound(source: Document, place: ast.AST, code: str) -> bool:
 
 
 def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant], bool]:
-    """Return the constants that the module assigns to `a.b.c`, and whether it also assigns new default objects."""
+    """Return the constants assigned to `a.b.c`, and whether it gets default objects."""
     local = scope(source, place, code) if code.isidentifier() else None
     constants: set[Constant] = set()
     fresh = False
@@ -90,7 +90,7 @@ def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant],
 
 
 def _read_at(place: ast.AST) -> Iterator[ast.expr]:
-    """Yield the names, attributes and items that a statement reads (a compound statement: that its header reads)."""
+    """Yield the names, attributes and items that a statement's header reads."""
     waiting = [place]
     while waiting:
         node = waiting.pop()
@@ -107,7 +107,7 @@ def _has_name(source: Document, place: ast.AST, name: str) -> bool:
 
 
 def _has_attribute(source: Document, place: ast.AST, chain: tuple[str, ...]) -> bool:
-    """Return whether an attribute exists from the start. This is assumed for attributes of all objects but `self`."""
+    """Return whether an attribute exists from the start; assumed unless of `self`."""
     method = source.method(place)
     if method is None or len(chain) < 2 or chain[0] != method[2]:
         return True
@@ -140,7 +140,7 @@ def _bindings(node: ast.AST) -> Iterator[Binding]:
 
 
 def _pairs(node: ast.stmt, target: ast.expr, value: ast.expr) -> Iterator[Binding]:
-    """Yield the bindings of an assignment. If both sides are tuples of equal length, pair their elements."""
+    """Yield the bindings of an assignment, with tuples paired."""
     if isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
         if len(target.elts) == len(value.elts):
             for left, right in zip(target.elts, value.elts, strict=True):

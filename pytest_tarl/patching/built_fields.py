@@ -1,4 +1,4 @@
-"""Fields of published messages that several statements build, such as `msg.data = a` followed by `msg.data += b`.
+"""Message fields that several statements build, such as `msg.data += b`.
 
 The program has no single expression for the published value of such a field. Therefore, a change of the field is
 written before the publish call.
@@ -47,7 +47,7 @@ def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, 
 
 
 def _published(statement: ast.stmt) -> ast.expr | None:
-    """If a statement only publishes a message, return the message if it is a name or an attribute."""
+    """Return the message that a statement publishes, if it does nothing else."""
     call = statement.value if isinstance(statement, ast.Expr) else None
     if not isinstance(call, ast.Call) or len(call.args) != 1 or call.keywords:
         return None
@@ -58,7 +58,7 @@ def _published(statement: ast.stmt) -> ast.expr | None:
 def _writes(
     function: ast.AST, message: str, statement: ast.stmt
 ) -> dict[str, list[ast.Assign | ast.AugAssign]]:
-    """Map each field of a message to the statements above the publish call that write the field."""
+    """Map each field of a message to the statements that write it."""
     found: dict[str, list[ast.Assign | ast.AugAssign]] = {}
     for node in ast.walk(function):
         if not isinstance(node, ast.Assign | ast.AugAssign) or node.lineno >= statement.lineno:

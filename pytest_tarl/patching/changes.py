@@ -11,7 +11,7 @@ Lines = tuple[bytes, ...]
 
 
 class MisfitError(Exception):
-    """A hunk fits nowhere in the file. The argument is the hunk's line number in the original, counted from 1."""
+    """A hunk fits nowhere; the argument is its line number from 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Hunk:
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """Replace the lines `old`, starting at line `start` (from 0), by `new`; either may be empty."""
+    """Replace the lines `old` from line `start` by `new`."""
 
     start: int
     old: Lines
@@ -71,7 +71,7 @@ class FilePatch:
         return FilePatch(self.name, self.after, self.before, tuple(turned))
 
     def exact(self, content: bytes) -> bytes | None:
-        """Return the patched content, or None if the blob id of the old or of the new content does not match."""
+        """Return the patched content, or None for another blob id."""
         if not identical(content, self.before):
             return None
         lines, result, at = split_lines(content), list[bytes](), 0
@@ -115,7 +115,7 @@ def _replacements(hunk: Hunk) -> Iterator[Replacement]:
 
 
 def _place(hunk: Hunk, lines: Sequence[bytes], least: int, likely: int) -> int | None:
-    """Return the line at or after `least`, nearest to `likely`, where all original lines of the hunk match."""
+    """Return the line nearest to `likely` where the hunk matches."""
     old = list(hunk.old)
     fits = [at for at in range(least, len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     return min(fits, key=lambda at: abs(at - likely), default=None)

@@ -1,4 +1,4 @@
-"""Make a change conditional: an `if` around the statement, or a conditional expression inside it."""
+"""Make a change conditional, by an `if` or a conditional expression."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Change:
 
 
 def lazy(source: Document, node: ast.expr) -> ast.expr | None:
-    """If a use is evaluated after its statement has run, return the body of its lambda or generator, else None."""
+    """Return the lambda or generator body of a use that runs later, else None."""
     for around in source.ancestors(node):
         if isinstance(around, ast.stmt):
             return None
@@ -102,7 +102,7 @@ def named(source: Document, statement: ast.stmt, name: str, condition: str) -> E
 
 
 def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Return whether a condition has the same value just before a statement and where its changes are evaluated."""
+    """Return whether a condition keeps its value until the changes are evaluated."""
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
@@ -111,7 +111,7 @@ def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 def choices(
     source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
 ) -> Iterator[Edit]:
-    """Yield edits inside a statement. Before it, a condition that is long or repeated is assigned to a name."""
+    """Yield edits inside a statement, with long conditions assigned before it."""
     test = tests[0]
     long = len(changes) > 1 or len(test) > LONGEST_CONDITION
     if long and nameable(source, statement, changes):
@@ -148,7 +148,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Return whether a statement runs code that may change a condition's value. Arithmetic does not count."""
+    """Return whether a statement may change a condition's value."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
             return True
@@ -162,14 +162,14 @@ def _is_elif(source: Document, statement: ast.stmt) -> bool:
 
 
 def _consumed(source: Document, generator: ast.GeneratorExp) -> bool:
-    """Return whether a generator is an argument of a builtin that consumes it at once."""
+    """Return whether a builtin consumes a generator at once."""
     call = source.parents[generator]
     eager = {"sum", "min", "max", "any", "all", "list", "tuple", "set", "sorted", "dict"}
     return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in eager
 
 
 def _has_long_text(statement: ast.stmt) -> bool:
-    """Return whether a string spans several lines, so that indenting the statement would change it."""
+    """Return whether a string spans lines, which indenting would change."""
     texts = (node for node in ast.walk(statement) if isinstance(node, ast.Constant | ast.JoinedStr))
     return any(node.end_lineno != node.lineno for node in texts)
 

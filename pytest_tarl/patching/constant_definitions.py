@@ -1,4 +1,4 @@
-"""Find the definition of a constant: a literal, a parameter's default, or a value in a YAML, launch or .cfg file."""
+"""Find where a constant is defined: in code, YAML, launch or .cfg files."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
 
 
 def alternatives(analysis: Analysis, places: Sequence[Place]) -> bool:
-    """Return whether the program selects one of these numbers: they are in one table or conditional expression."""
+    """Return whether the program selects one of these numbers."""
     holders = [_holders(analysis, place) for place in places] if len(places) > 1 else []
     return any(one & other for one, other in itertools.combinations(holders, 2))
 
@@ -165,7 +165,7 @@ def _converted(node: ast.expr | None) -> ast.expr | None:
 
 
 def package_files(root: Path, *nodes: Path) -> dict[str, str]:
-    """Return the configuration files of the packages that contain nodes, as texts by path relative to `root`."""
+    """Return path → text of the node packages' configuration files."""
     found: dict[str, str] = {}
     for top in dict.fromkeys(_package(root, node) for node in nodes):
         found |= _files_in(top, root)
@@ -179,7 +179,7 @@ def _package(root: Path, node: Path) -> Path:
 
 
 def _files_in(top: Path, root: Path) -> dict[str, str]:
-    """Return the configuration files in a folder, at most `_MOST_FILES`, as texts by path relative to `root`."""
+    """Return path → text of a folder's configuration files."""
     found: dict[str, str] = {}
     for path in sorted(top.rglob("*")):
         if len(found) >= _MOST_FILES:
@@ -219,7 +219,7 @@ def _launched(path: str, key: str, text: str) -> Iterator[Place]:
 
 
 def _target(source: Document, node: ast.expr) -> str:
-    """Return the name to which a number is assigned, or where it is in an expression, or "" if it stands alone."""
+    """Return the name of a number, or its place in an expression, or ""."""
     around = source.parents.get(node)
     if isinstance(around, ast.Assign) and len(around.targets) == 1:
         return source.source(around.targets[0])
@@ -227,7 +227,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
-    """Say where a Python launch file computes a parameter so that no number can be changed, or return ""."""
+    """Say where a launch file computes a parameter without a changeable number."""
     key = key_of(name)
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
@@ -268,7 +268,7 @@ def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
 
 
 def _written(node: ast.expr | None) -> ast.expr | None:
-    """Return the part of an expression that is a number: the default in `float(os.environ.get("SPEED", "0.5"))`."""
+    """Return the number in an expression, such as a default in `float(…)`."""
     while isinstance(node, ast.Call):
         function = ast.unparse(node.func)
         if function in ("float", "int") and len(node.args) == 1 and not node.keywords:
@@ -282,7 +282,7 @@ def _written(node: ast.expr | None) -> ast.expr | None:
 
 
 def literal_number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the value of a literal number with its sign, or of a string that contains a number, else None."""
+    """Return the number of a literal or string, else None."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
         return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)
     if negative := isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
@@ -300,7 +300,7 @@ def _same(old: str, value: float) -> bool:
 
 
 def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
-    """Return the other places that use the same constant as these operands, as `path:line`, in order."""
+    """Return the other uses of the operands' constants, as `path:line`."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {span for operand in used for span in (operand.definition, *operand.definitions)} - {None}
     names = {key_of(parameter(analysis, operand)) for operand in used} - {""}
@@ -315,7 +315,7 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
 
 
 def _entry_of_parameter(call: ast.Call) -> str:
-    """Return the key of an entry that is read from a parameter: `gain` for `get_param("~", {}).get("gain", 0.3)`."""
+    """Return the key of an entry that is read from a parameter."""
     of_environment = ast.unparse(call.func) in ENVIRONMENT
     return "" if of_environment else next(iter(strings(call.args[:1])), "")
 
@@ -329,7 +329,7 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 
 def _name(source: Document, node: ast.expr) -> str:
-    """Return a literal's name: the target of its assignment or the parameter whose default it is, or ""."""
+    """Return the variable or parameter that a literal defines, or ""."""
     key = ""
     inner: ast.AST = node
     for each in source.ancestors(node):

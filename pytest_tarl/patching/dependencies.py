@@ -1,4 +1,4 @@
-"""Find message packages that a patch imports but the file's ROS package does not depend on yet."""
+"""Find imported message packages that package.xml lacks."""
 
 from __future__ import annotations
 

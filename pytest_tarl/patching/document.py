@@ -1,4 +1,4 @@
-"""A source text with its syntax tree: positions of nodes, and edits that leave all other text unchanged."""
+"""A source text with its syntax tree, and edits that keep all other text."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def strings(nodes: Iterable[ast.AST]) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters from `start` to `end` by `text`, in which every line ends with a line feed."""
+    """Replace the characters from `start` to `end` by `text`."""
 
     start: int
     end: int
@@ -69,13 +69,13 @@ class Document:
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:
-        """Map (start, end) offsets to expressions. If several expressions have the same offsets, use the innermost."""
+        """Map (start, end) offsets to the innermost expression."""
         nodes = (node for node in ast.walk(self.tree) if isinstance(node, ast.expr))
         return {(self.start(node), self.end(node)): node for node in nodes}
 
     @cached_property
     def unit(self) -> str:
-        """Return one level of indentation as used in this file; four spaces if nothing is indented."""
+        """Return one level of this file's indentation, by default four spaces."""
         for node in ast.walk(self.tree):
             body = getattr(node, "body", None)
             if isinstance(node, ast.stmt) and isinstance(body, list) and self.alone(body[0]):
@@ -102,7 +102,7 @@ class Document:
         return self.line_starts[min([node.lineno, *(each.lineno for each in decorators)]) - 1]
 
     def line_end(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset at which the node's last line ends, before the line ending."""
+        """Return the offset of the end of a node's last line."""
         match = _NEWLINE.search(self.text, self.end(node))
         return match.start() if match else len(self.text)
 
@@ -162,7 +162,7 @@ class Document:
         return next((each for each in self.ancestors(node) if isinstance(each, Function)), None)
 
     def method(self, node: ast.AST) -> tuple[ast.ClassDef, Function, str] | None:
-        """For code inside a method, return the class, the method and the name of `self`; None without an instance."""
+        """Return class, method and name of `self` around a node, or None."""
         for method, owner in pairwise([node, *self.ancestors(node)]):
             if isinstance(method, Function) and isinstance(owner, ast.ClassDef):
                 return _bound(owner, method)
@@ -185,7 +185,7 @@ class Document:
         return self.line_starts[line - 1] + column - 1 if 0 < line <= len(self.line_starts) else -1
 
     def offset(self, line: int, byte: int) -> int:
-        """Return the character offset of a position in the syntax tree, where columns count UTF-8 bytes."""
+        """Return the character offset of a syntax tree position in UTF-8 bytes."""
         start = self.line_starts[line - 1]
         if self.text.isascii():
             return start + byte
@@ -210,7 +210,7 @@ def parse(text: str) -> ast.Module:
 
 
 def parse_expression(code: str) -> ast.expr:
-    """Parse an expression, which may span several lines and end in a comment. Raise SyntaxError."""
+    """Parse an expression of several lines or with a comment. Raise SyntaxError."""
     statement = parse(f"({code}\n)").body[0]
     assert isinstance(statement, ast.Expr)  # noqa: S101  (parentheses hold nothing else)
     return statement.value
@@ -227,7 +227,7 @@ def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
 
 
 def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str = "\n") -> str:
-    """Return a text in any language with all edits applied. Raise RepairError if two edits overlap."""
+    """Return a text with all edits applied. Raise RepairError if two overlap."""
     pieces, position = [], 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:

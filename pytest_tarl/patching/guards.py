@@ -25,7 +25,7 @@ class Reading:
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python code, or "" if it always holds. `readings` maps sensor names to expressions."""
+    """Return a guard as Python code; "" if it always holds."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):
@@ -73,7 +73,7 @@ def bound(sensor: Sensor, value: float) -> str:
 
 
 def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conjunct: Conjunct) -> bool:
-    """Return whether a condition can hold before the first message, when fields of new message objects are 0."""
+    """Return whether a condition can hold for a message of zeros."""
     constants = initial(source, place, chain[-1])[0]
     if any(initial(source, place, each)[1] for each in chain):
         constants.add(0.0)
@@ -123,7 +123,7 @@ def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
 
 
 def _is_top(sensor: Sensor, value: float) -> bool:
-    """Return whether a bound is the upper end of a sensor's range, up to rounding."""
+    """Return whether a bound is the upper end of a sensor's range."""
     return sensor.numeric and math.isclose(value, sensor.high or 0.0, rel_tol=1e-9, abs_tol=1e-9)
 
 
@@ -140,6 +140,6 @@ def _quoted(text: str) -> str:
 
 
 def _rejects_none(conjunct: Conjunct, is_boolean: bool) -> bool:
-    """Return whether the condition evaluates to False, without raising, if the value is None."""
+    """Return whether the condition is False for None, without an error."""
     equality = bool(conjunct.sensor.categories) or conjunct.low == conjunct.high
     return equality and not (is_boolean and not conjunct.low)

@@ -15,7 +15,7 @@ _SHAPING = ast.BinOp | ast.UnaryOp | ast.IfExp | ast.List | ast.Tuple
 
 
 def in_integer_field(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression is the value (or a part of the value) of an integer field of a message."""
+    """Return whether an expression is in an integer field of a message."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.keyword) and parent.arg is not None:
@@ -40,7 +40,7 @@ def _takes_positional(source: Document, call: ast.Call, argument: ast.AST) -> bo
 
 
 def _takes_integer(source: Document, target: ast.expr) -> bool:
-    """Return whether a target such as `self.out.status.code` is an integer field of a message created in this file."""
+    """Return whether a target is an integer field of a new message."""
     fields: list[str] = []
     while isinstance(target, ast.Attribute | ast.Subscript):
         if isinstance(target, ast.Attribute):
@@ -54,7 +54,7 @@ def _takes_integer(source: Document, target: ast.expr) -> bool:
 
 @cache
 def _constructors(source: Document) -> dict[str, ast.expr]:
-    """Map each variable that is assigned a call to the called function: `out` to `Int32` for `out = Int32()`."""
+    """Map each variable to the function whose result it holds."""
     return {
         ast.unparse(target): node.value.func
         for node in ast.walk(source.tree)
@@ -74,7 +74,7 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of a message type, given its expression in this file, or "" if it is not imported."""
+    """Return the ROS name of a message type, or ""."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 
@@ -90,7 +90,7 @@ def _fields(name: str) -> dict[str, str]:
 
 @cache
 def _packages(source: Document) -> dict[str, str]:
-    """Map imported names to ROS names, such as `Int32` to `std_msgs/Int32` and `std_msgs` to `std_msgs/`."""
+    """Map imported names to ROS names, such as `Int32` to `std_msgs/Int32`."""
     found: dict[str, str] = {}
     for node in ast.walk(source.tree):
         if isinstance(node, ast.ImportFrom) and node.module:

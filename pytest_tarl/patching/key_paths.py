@@ -14,14 +14,14 @@ _MOST_FILES = 64  # maximum number of files whose keys are cached
 
 
 def keys_above(place: Place, text: str) -> tuple[str, ...] | None:
-    """Return the keys above a number in a file with this text, without wildcards; None for other kinds of files."""
+    """Return the keys above a number, or None for other files."""
     if not place.path.endswith((".yaml", ".yml", ".json")):
         return None
     return _keys(text).get(place.start)
 
 
 def belongs(name: str, keys: Sequence[str]) -> bool:
-    """Return whether a number under these keys can be the value of a parameter with an absolute name (`/base/gain`)."""
+    """Return whether a number under these keys may be a parameter's value."""
     return name.strip("/").split("/")[-len(keys) :] == [*keys]
 
 

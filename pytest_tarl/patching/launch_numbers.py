@@ -1,4 +1,4 @@
-"""Find the numbers in a Python launch file that determine a parameter's value, as in `{"gain": 2 * base}`."""
+"""Find the numbers of a launch file that determine a parameter."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ class Numeral:
 
 
 def key_of(name: str) -> str:
-    """Return the last part of a parameter's name, which is its key in a file: `gain` of `~base/gain`."""
+    """Return the last part of a parameter's name, such as `gain`."""
     return re.split(r"[/.~]", name)[-1]
 
 
 def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
-    """Yield the numbers that determine parameters with the key `key`. Numbers in its own expression come first."""
+    """Yield the numbers that determine the parameters `key`."""
     names = _Names.of(tree)
     for expression in _expressions(key, tree):
         found = _written(expression)
@@ -51,7 +51,7 @@ def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
 
 
 def computed(key: str, tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions of parameters with the key `key`, if no number in the expression can be changed."""
+    """Yield the expressions of parameters `key` without a changeable number."""
     names = _Names.of(tree)
     for expression in _expressions(key, tree):
         try:
@@ -64,7 +64,7 @@ def computed(key: str, tree: ast.Module) -> Iterator[ast.expr]:
 
 @dataclass
 class _Names:
-    """The values of names that are assigned only once, and the defaults of launch arguments declared only once."""
+    """Values of names and launch arguments with one assignment."""
 
     assigned: dict[str, ast.expr] = field(default_factory=dict)
     arguments: dict[str, ast.expr] = field(default_factory=dict)
@@ -100,7 +100,7 @@ def _single(found: Mapping[str, list[ast.expr | None]]) -> dict[str, ast.expr]:
 
 
 def _expressions(key: str, tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions that a file assigns to parameters with the key `key`, in the order of the file."""
+    """Yield the expressions of the parameters `key` in order."""
     found: list[ast.expr] = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
@@ -119,7 +119,7 @@ def _is_named(node: ast.expr, key: str) -> bool:
 
 
 def _determining(expression: ast.expr, names: _Names) -> Iterator[Numeral]:
-    """Yield the numbers on which the value of an expression depends linearly. Raises _NoNumberError."""
+    """Yield the numbers that an expression scales linearly. Raises _NoNumberError."""
     found: dict[int, tuple[ast.expr, int]] = {}
     whole = _value(expression, names, {}, found)
     for node, _ in sorted(found.values(), key=lambda one: one[1]):
@@ -181,7 +181,7 @@ def _operated(operator: ast.operator, left: float, right: float) -> float:
 
 
 def _written(node: ast.expr) -> bool | int | float | None:
-    """Return the value of a literal number or of a string that contains a number, or None for other expressions."""
+    """Return the number of a literal or string, or None."""
     sign, inner = 1, node
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         sign, inner = -1, node.operand

@@ -1,4 +1,4 @@
-"""Merge several patches of the same text into one, or report the lines on which they conflict."""
+"""Merge patches of the same text, or report the conflicting lines."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
 
 
 def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
-    """Return a text with all replacements applied; keep the order of insertions at one line. Raise RepairError."""
+    """Return a text with all replacements applied. Raise RepairError."""
     lines, result, at = split_lines(content), list[bytes](), 0
     for one in _in_order(wanted):
         if tuple(lines[one.start : one.end]) != one.old or one.start < at:
@@ -66,7 +66,7 @@ def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
 
 
 def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
-    """Undo `combined`: return the original text, or None if the content lacks one of the replacements."""
+    """Undo `combined`; return the original text or None."""
     lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
     for one in _in_order(wanted):
         start = one.start + shift
@@ -99,7 +99,7 @@ def same_change(first: Patch, second: Patch) -> bool:
 
 
 def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
-    """Yield conflicts on constants that both patches change, for example at the use and at the definition."""
+    """Yield conflicts on constants that both patches change."""
     for told in constants(first):
         file, _, line = told.partition(" ")[0].rpartition(":")
         if told in constants(second) and line.isdecimal() and first.base == second.base:
@@ -107,7 +107,7 @@ def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
 
 
 def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
-    """Return the distinct replacements in file order; replacements of the same lines are merged if possible."""
+    """Return the distinct replacements in order, merged where possible."""
     ordered: list[Replacement] = []
     for one in sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end)):
         joined = agreed(ordered[-1], one) if ordered else None

@@ -1,4 +1,4 @@
-"""Mutations: new values of constants at their uses; `rewriting.py` writes them into the source."""
+"""New values of constants at their uses (see `rewriting.py`)."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 def stepped(
     operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation for a step on a chart (or for a factor if `chart` is None); None if nothing changes."""
+    """Return the mutation for a step on a chart, or for a factor; None without a change."""
     if chart is None or operand.value is None:
         return mutate(operand, step)
     by = chart.factor(float(operand.value), step)
@@ -92,7 +92,7 @@ def step_of(mutation: Mutation) -> float | None:
 
 
 def located(mutation: Mutation) -> Mutation:
-    """If a mutation changes a parameter in a file, add the place in the file; return other mutations unchanged."""
+    """Add the place in the file to a mutation of a file's parameter."""
     operand = mutation.operand
     if isinstance(operand, ParameterInFile) and mutation.place is None:
         return replace(mutation, place=operand.place)
@@ -100,7 +100,7 @@ def located(mutation: Mutation) -> Mutation:
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether an operand must stay an integer, such as an index, a length or an integer message field."""
+    """Return whether an operand must stay an integer, such as an index."""
     source = analysed_document(analysis, operand.span.path)
     return isinstance(operand.value, int) and needs_integer(source, source.find(operand.span))
 
@@ -132,7 +132,7 @@ def redefinition(mutation: Mutation) -> float | int | bool:
 
 
 def form_values(mutation: Mutation) -> dict[str, float]:
-    """Return the parameters of a structural mutation. The searched parameter is scaled by the mutation's value."""
+    """Return the parameters of a structural mutation."""
     if mutation.form is None:
         return {}
     values = dict(mutation.form.defaults)
@@ -158,7 +158,7 @@ def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None
 
 
 def _step(factor: float) -> float:
-    """Return what a zero becomes after a factor: 0 for factor 1, and opposite values for f and 1/f."""
+    """Return the value of a zero after a factor, with opposite values for f and 1/f."""
     size = abs(factor)
     if size < 1e-9:
         return 0.0

@@ -45,7 +45,7 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
 
 
 def _inside(source: Document, own: ast.expr) -> Iterator[Place | None]:
-    """If a call reads a constant by its name, as `read("gain", 2.0)` does, yield the only number in the call."""
+    """Yield the only number in a call that reads a constant by name."""
     given = [*own.args, *(one.value for one in own.keywords)] if isinstance(own, ast.Call) else []
     texts = strings(given)
     numbers = [one for one in given if _is_number(one)]
@@ -54,7 +54,7 @@ def _inside(source: Document, own: ast.expr) -> Iterator[Place | None]:
 
 
 def _elements(source: Document, own: ast.expr) -> Iterator[Place | None]:
-    """Yield the list element that an expression reads from an array: 2.0 for `C[1]` after `C = array([1.0, 2.0])`."""
+    """Yield the list element that an expression reads from an array."""
     if not isinstance(own, ast.Subscript):
         return
     index = literal_number(own.slice)

@@ -1,4 +1,4 @@
-"""Patches: unified diffs for `git apply` and `patch -p1`, with any line ending and encoding."""
+"""Patches as unified diffs, with any line ending and encoding."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def unified_diff(
 
 
 def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequence[str]) -> str:
-    """Return the diff between old and new bytes; `texts` maps names relative to `base` to (old, new)."""
+    """Return a diff; `texts` maps names relative to `base` to old and new bytes."""
     comments = [f"# {line}".rstrip() + "\n" for text in header for line in text.splitlines() or [""]]
     head = "".join((*comments, f"# {BASE}: {base}\n"))
     diffs = "".join(_file_diff(name, before, after) for name, (before, after) in texts.items())
@@ -53,7 +53,7 @@ def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequ
 
 
 def seal(content: bytes) -> str:
-    """Return the hash of a patch, given its content without the line that contains the hash."""
+    """Return the hash of a patch without its hash line."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -83,7 +83,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
 
 
 def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a change that is not a repair. Quote each line, so that no tool applies the change. Raise RepairError."""
+    """Write a rejected change with quoted lines. Raise RepairError."""
     content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
     path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
     try:
@@ -127,7 +127,7 @@ def split_lines(content: bytes) -> list[bytes]:
 
 
 def _base(files: Sequence[Path], root: Path) -> Path:
-    """Return the folder to which the paths of a patch are relative. Raise RepairError."""
+    """Return the base folder of a patch's paths. Raise RepairError."""
     tops = {_git_top(file) for file in files}
     if len(tops) > 1:
         names = ", ".join(str(file) for file in files)
@@ -159,7 +159,7 @@ def _stated_base(text: str) -> str:
 
 
 def _encoded(path: Path, original: bytes, text: str) -> bytes:
-    """Return the new text in the file's encoding, with its line endings. Raise RepairError."""
+    """Encode the new text like the file. Raise RepairError."""
     encoding, _ = tokenize.detect_encoding(io.BytesIO(original).readline)
     text = text.removeprefix("\ufeff")
     if b"\r\n" in original and "\r\n" not in text:
@@ -174,7 +174,7 @@ def _encoded(path: Path, original: bytes, text: str) -> bytes:
 
 
 def _with_endings(original: str, text: str) -> str:
-    """Keep the line endings of unchanged lines. New lines get the most frequent line ending of the file."""
+    """Keep line endings; new lines get the file's most frequent one."""
     before, after = _lines(original), _lines(text)
     usual = "\r\n" if original.count("\r\n") * 2 > original.count("\n") else "\n"
     bare = [line.replace("\r\n", "\n") for line in before]

@@ -1,4 +1,4 @@
-"""Read patches from files: the keys and values in the header, and the changes to each file."""
+"""Read patches: their header and their changes."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ class Patch:
         return self.told(BASE)[-1]
 
     def told(self, key: str) -> list[str]:
-        """Return all header values of a key. A merged patch has one value for each patch that it consists of."""
+        """Return all header values of a key; a merged patch may have several."""
         return [value for name, value in self.facts if name == key]
 
 
 def read(path: Path) -> Patch:
-    """Read a patch. Raise RepairError if the patch is missing, not written by TARL, truncated or edited."""
+    """Read a patch. Raise RepairError if it is not a whole patch of TARL."""
     try:
         content = unquoted(read_regular(path))
     except OSError as problem:
@@ -103,14 +103,14 @@ def _whole(content: bytes, seals: Sequence[str]) -> bool:
 
 
 def _inside(name: str) -> bool:
-    """Return whether a relative name stays below its base folder and outside the folders of `CLOSED`."""
+    """Return whether a name stays below its base and outside `CLOSED`."""
     parts = name.split("/")
     odd = "\\" in name or not name.isprintable()
     return not odd and not {"", ".", ".."} & set(parts) and not in_closed_folder(parts)
 
 
 def in_closed_folder(parts: Iterable[str]) -> bool:
-    """Return whether a part of a path names a folder that no patch may change, in upper or lower case."""
+    """Return whether a path's part is a closed folder, in any case."""
     return not CLOSED.isdisjoint(map(str.lower, parts))
 
 

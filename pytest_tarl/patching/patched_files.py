@@ -1,4 +1,4 @@
-"""Locate the files of a patch. Refuse files outside the project: a header or symbolic links may lead there."""
+"""Locate the files of a patch, and refuse files outside the project."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
 
 
 def _project(folder: Path) -> Path:
-    """Return the top of the git repository around a folder, or else the folder itself."""
+    """Return the git repository around a folder, or else the folder."""
     return next((each for each in (folder, *folder.parents) if (each / ".git").exists()), folder)
 
 

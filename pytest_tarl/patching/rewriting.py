@@ -1,4 +1,4 @@
-"""Write mutations and their guard into the source. The text is exactly what the patch contains later."""
+"""Write mutations and their guard into the source."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 def conditional_definition(mutations: Sequence[Mutation], guard: Guard) -> bool:
-    """Return whether a guard would apply to a number at its definition. Such a change cannot be written."""
+    """Return whether a guard would apply to a number at its definition."""
     placed = any(located(mutation).place is not None for mutation in mutations)
     return placed and not all(map(always, guard.conjuncts))
 
@@ -129,7 +129,7 @@ def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | i
 def guard_text(
     guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
 ) -> str:
-    """Return the Python code of the guard at the first mutation, or "" if the guard always holds."""
+    """Return the code of the guard at the first mutation, or ""."""
     conditions = Conditions(analysis, guard, topics)
     for source, node, _, _, site in _formed(analysis, mutations[:1]):
         return conditions.at(source, site, source.statement(node))
@@ -148,7 +148,7 @@ class Use:
 
 
 class Conditions:
-    """The Python code of a guard for every place that checks the guard, and the subscriptions that it needs."""
+    """The code of a guard for each place, and its subscriptions."""
 
     def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -157,13 +157,13 @@ class Conditions:
         self.subscriptions = Subscriptions(analysis, topics)
 
     def at(self, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the guard as Python at a place. Raise RepairError if a sensor's value is not available there."""
+        """Return the guard as Python at a place. Raise RepairError."""
         wanted = [each for each in self._guard.conjuncts if not always(each)]
         readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the code of a sensor's value at a place. It is 0 before the first message. Raise RepairError."""
+        """Return the code of a sensor's value at a place. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(
@@ -194,7 +194,7 @@ class Conditions:
 def _file_edits(
     source: Document, statements: Sequence[tuple[ast.stmt, list[Use]]], conditions: Conditions
 ) -> Iterator[Edit]:
-    """Yield the edits of one file: unconditional changes, conditional expressions, and branches around statements."""
+    """Yield all edits of one file."""
     twice: list[tuple[ast.stmt, list[Change], str]] = []
     for statement, uses in statements:
         changes = [use.change for use in uses]
@@ -225,7 +225,7 @@ def _by_file(
 
 
 def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
-    """Return a function that takes a use and returns the statement, lambda or generator that checks its condition."""
+    """Return a function from a use to the code that checks its condition."""
     if doubled(source, statement, [use.change for use in uses]):
         return lambda _: statement
     return lambda use: lazy(source, use.change.node) or statement

@@ -1,4 +1,4 @@
-"""Reconcile two changes of the same lines, if both add imports or if one insertion contains the other one."""
+"""Reconcile two changes of the same lines."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Imports = dict[
 
 
 def agreed(one: Replacement, other: Replacement) -> Replacement | None:
-    """Return one replacement that has the effect of both, or None if they conflict."""
+    """Return one replacement with the effect of both, or None."""
     if one.start != other.start or one.old != other.old:
         return None
     for wide, narrow in ((one, other), (other, one)):
@@ -35,7 +35,7 @@ def _within(narrow: Lines, wide: Lines) -> bool:
 
 
 def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
-    """Return the imports of each text, or None if a text contains anything else, such as a comment."""
+    """Return the imports of each text, or None if it contains anything else."""
     found = []
     for lines in texts:
         imports: Imports = {}
@@ -63,7 +63,7 @@ def _added(before: Imports, after: Imports) -> bool:
 
 
 def _written(first: Imports, second: Imports, ending: bytes) -> list[bytes]:
-    """Return lines with the imports of both texts. Sort the names if they are sorted in both texts."""
+    """Return the imports of both texts, sorted if both texts are sorted."""
     lines = []
     for where in {**first, **second}:
         mine, theirs = list(first.get(where, ())), list(second.get(where, ()))

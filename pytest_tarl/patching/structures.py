@@ -1,4 +1,4 @@
-"""Apply a structural repair's template to an expression: edit it, and add state if the template needs state."""
+"""Apply a repair template to an expression, with state if needed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CLOSED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """A template applied to an expression: the parameter to search, all defaults, the sensor and the partner."""
+    """A template at an expression, with its parameters and sensor."""
 
     template: Template
     parameter: str = ""
@@ -39,7 +39,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Keeper:
-    """Where a node can store state between calls: the prefix of the variable names, and where to initialise them."""
+    """Where a node stores state between calls."""
 
     prefix: str
     place: int
@@ -60,7 +60,7 @@ def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: s
 def form_edits(
     source: Document, node: ast.expr, form: Form, values: Mapping[str, float], condition: str, sensor: str
 ) -> list[Edit]:
-    """Return the edits that write a form at an expression. Raise RepairError if the form does not fit there."""
+    """Return the edits that write a form. Raise RepairError if it does not fit."""
     made = form.template
     statement = source.statement(node)
     fill = _numbers(made, values) | {"sensor": sensor}
@@ -81,14 +81,14 @@ def form_edits(
 
 
 def _numbers(template: Template, values: Mapping[str, float]) -> dict[str, str]:
-    """Return the code of each parameter's value. Counts (parameters with a grid of 1) are written as integers."""
+    """Return the code of each parameter value; counts are integers."""
     counts = {one.name for one in template.parameters if one.grid == 1.0}
     return {name: number(round(value) if name in counts else float(value)) for name, value in values.items()}
 
 
 @dataclass(frozen=True)
 class _Place:
-    """An expression to which a form is applied, and its statement; `condition` is the guard as Python, or ""."""
+    """An expression with a form, its statement and its condition."""
 
     source: Document
     statement: ast.stmt
@@ -97,7 +97,7 @@ class _Place:
     condition: str
 
     def named(self, name: str, fill: Mapping[str, str]) -> tuple[list[str], str]:
-        """Return the lines that a form adds, and the expression that replaces the value in the variable `name`."""
+        """Return the lines that a form adds and the new expression."""
         fill = {**fill, "x": name}
         new = filled(self.form.template.expression, fill)
         lines = [filled(line, fill) for line in self.form.template.lines]
@@ -131,7 +131,7 @@ def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Return edits that change a value after the statement that assigns it to a name. Raise RepairError."""
+    """Change a value after its assignment. Raise RepairError."""
     source, statement = place.source, place.statement
     target = _target(statement)
     if target is None or statement.value is not place.node or not source.alone(statement):  # type: ignore[attr-defined]
@@ -143,7 +143,7 @@ def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Assign an unnamed value, as in `return a * b`, to a new name before the statement, and change it there."""
+    """Assign an unnamed value to a name before its statement."""
     source, statement, node = place.source, place.statement, place.node
     if not _can_stand_before(source, statement) or not _always_evaluated(source, statement, node):
         raise RepairError(
@@ -162,7 +162,7 @@ def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _ahead_of_publishing(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Change a field of a message before the statement that publishes it, in place if possible: `x *= 2.0`."""
+    """Change a message field before the message is published."""
     source, statement, node = place.source, place.statement, place.node
     if not _can_stand_before(source, statement):
         raise RepairError(f"{source.path}:{node.lineno}: no line can be inserted before this one.")
@@ -218,7 +218,7 @@ def _state_edits(keeper: Keeper, states: Sequence[tuple[str, str]]) -> list[Edit
 
 
 def _keeper(source: Document, statement: ast.stmt) -> Keeper:
-    """Return where state is stored: an attribute of the instance, a variable before the loop, or a global."""
+    """Return where state is stored: instance, loop or global."""
     method = source.method(statement)
     if method is not None and source.function(statement) is method[1]:
         owner, _, instance = method
@@ -250,7 +250,7 @@ def _keeper(source: Document, statement: ast.stmt) -> Keeper:
 
 
 def _first(body: Sequence[ast.stmt]) -> ast.stmt:
-    """Return the first statement after the docstring and the call of the base constructor. Raise RepairError."""
+    """Return the first real statement of a constructor. Raise RepairError."""
     for statement in body:
         value = statement.value if isinstance(statement, ast.Expr) else None
         docstring = isinstance(value, ast.Constant) and isinstance(value.value, str)
@@ -286,7 +286,7 @@ def _short(statement: ast.stmt, node: ast.expr) -> str:
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return the left side, operator and right side of a comparison; the operator is "" without two operands."""
+    """Return left side, operator and right side of a comparison."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""Export a patch for reviewers: a SARIF fix, GitHub `suggestion` blocks, or a review to post."""
+"""Export a patch as a SARIF fix, GitHub suggestions or a review."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 
 
 def sarif(patch: Patch) -> str:
-    """Return SARIF 2.1.0 with one result. The fix of this result is the patch, with the same paths."""
+    """Return SARIF 2.1.0 with one result, whose fix is the patch."""
     rule = {
         "id": RULE,
         "name": "RepairFound",
@@ -55,7 +55,7 @@ def sarif(patch: Patch) -> str:
 
 
 def markdown(patch: Patch) -> str:
-    """Return Markdown: the evidence, then for each change a line that locates it and a `suggestion` block."""
+    """Return Markdown with the evidence and a `suggestion` block per change."""
     parts = [_evidence(patch)]
     for path, first, last, text in _suggestions(patch):
         lines = f"line {last}" if first == last else f"lines {first} to {last}"
@@ -64,7 +64,7 @@ def markdown(patch: Patch) -> str:
 
 
 def review(patch: Patch) -> str:
-    """Return a review for GitHub's REST API: for each change, a comment with a `suggestion` block."""
+    """Return a review for GitHub's REST API, with a comment per change."""
     comments = [
         {
             "path": path,
@@ -140,7 +140,7 @@ def _artifact(file: FilePatch) -> dict[str, str]:
 
 
 def _main(patch: Patch) -> list[tuple[FilePatch, Replacement]]:
-    """Return the last change that removes lines. Imports and subscriptions come earlier and only add lines."""
+    """Return the last change that removes lines."""
     taking = [(file, one) for file in patch.files for one in file.replacements if one.old]
     return (taking or [(file, one) for file in patch.files for one in file.replacements])[-1:]
 

@@ -1,4 +1,4 @@
-"""Check, before a patch is written, that the file loses nothing except the lines that the repair changes.
+"""Check that a patched file loses only the lines that the repair changes.
 
 The check does not rely on the positions of the edits. It parses both texts into concrete syntax trees, which include
 comments.
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def nothing_lost(path: str, original: str, patched: str, changed: Collection[int]) -> None:
-    """Check that every simple statement and comment of the original occurs in the patched text, in the same order.
+    """Check that all statements and comments are still there, in the same order.
 
     `changed` are the line numbers (from 1) of statements that the repair rewrites; these may differ. Raise RepairError
     if the patched text does not parse or loses something.
@@ -44,7 +44,7 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
 
 
 def _pieces(node: libcst.CSTNode, module: libcst.Module) -> Iterator[tuple[libcst.CSTNode, str]]:
-    """Yield simple statements and comments in the order of the text, each with its code (unindented)."""
+    """Yield the code of each simple statement and comment in order."""
     import libcst as cst
 
     if isinstance(node, cst.Comment):

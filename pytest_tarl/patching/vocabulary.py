@@ -1,4 +1,4 @@
-"""Find the names that a module already uses, and unused names similar to a given one."""
+"""Find used names, and similar unused ones."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def names(source: Document) -> frozenset[str]:
 
 @cache
 def class_attributes(source: Document) -> frozenset[str]:
-    """Return the attributes that classes of a module define or that they access on plain names such as `self`."""
+    """Return the attributes that a module's classes define or use."""
     classes = [node for node in ast.walk(source.tree) if isinstance(node, ast.ClassDef)]
     inside = [each for owner in classes for each in ast.walk(owner)]
     used = [each for each in inside if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name)]

@@ -1,4 +1,4 @@
-"""Find the statements of a function that compute a value, such as a field of a published message."""
+"""Find the statements of a function that compute a value."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _parts(target: ast.expr) -> list[ast.expr]:
 
 
 def _read(value: ast.expr) -> set[str]:
-    """Return the names and attributes that an expression reads. For `a.b`, return only `a.b` and not `a`."""
+    """Return the names and attributes that an expression reads: `a.b`, but not `a`."""
     bases = {one.value for one in ast.walk(value) if isinstance(one, ast.Attribute)}
     names = (one for one in ast.walk(value) if isinstance(one, ast.Name | ast.Attribute) and one not in bases)
     return {ast.unparse(one) for one in names}

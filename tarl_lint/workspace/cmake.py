@@ -161,7 +161,7 @@ class _Build:
             self.compiled.add(_after(words, "EXECUTABLE"))
 
     def _known(self, command: Command, words: Sequence[str]) -> tuple[str, ...]:
-        """Return the words without unknown variables; record a problem for each word with an unknown variable."""
+        """Return the words without unknown variables, and record a problem for each."""
         unknown = [one for one in words if _names_unknown(one)]
         for one in unknown:
             self.problems.append(
@@ -184,7 +184,7 @@ class _Build:
             self.problems.append(Problem(self.path, command.line, reason))
 
     def _exists(self, command: Command, file: str) -> bool:
-        """Return whether a file that the package declares exists; record a problem if it does not."""
+        """Return whether a declared file exists; record a problem if not."""
         path = self.folder / file
         if _VARIABLE.search(file) or not path.is_relative_to(self.folder):
             return False
@@ -194,14 +194,14 @@ class _Build:
 
 
 def _names_unknown(word: str) -> bool:
-    """Return whether a word has a variable without a known value; variables for install folders are ignored."""
+    """Return whether a word has a variable without a known value."""
     return any(
         "DESTINATION" not in one and not one.startswith("CMAKE_INSTALL_") for one in _VARIABLE.findall(word)
     )
 
 
 def _sources(words: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the words of an `install` command that name programs, with the keywords and the place of installation."""
+    """Return the program words of an `install` command, with keywords and place."""
     if words[:1] == ("TARGETS",):
         return ()
     if "PROGRAMS" in words or _PROGRAMS.search(_after(words, "DESTINATION")):
@@ -215,7 +215,7 @@ def _after(words: Sequence[str], keyword: str, default: str = "") -> str:
 
 
 def renamed(command: Command) -> dict[str, str]:
-    """Return the target to which a command gives the name of a file, and this name; empty if there is none."""
+    """Return a target and the file name that a command gives it."""
     words = command.words
     if command.name != "set_target_properties" or "OUTPUT_NAME" not in words[:-1]:
         return {}
@@ -223,7 +223,7 @@ def renamed(command: Command) -> dict[str, str]:
 
 
 def _unclosed(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the lines at which a call, a text or a block begins that is never closed."""
+    """Yield the lines of calls, texts and blocks that are never closed."""
     depth, start = 0, 0
     for line, token in _tokens(text):
         if token["stray"]:
@@ -243,7 +243,7 @@ def _unclosed(text: str) -> Iterator[tuple[int, str]]:
 
 
 def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
-    """Yield the commands of a CMake text. `set` and `file(GLOB)` define variables; macros and loops are expanded."""
+    """Yield the commands of a CMake text, with macros and loops expanded."""
     here = str(folder)
     variables = {"PROJECT_NAME": [package], "CMAKE_CURRENT_SOURCE_DIR": [here], "PROJECT_SOURCE_DIR": [here],
                  "CMAKE_SOURCE_DIR": [here], "CMAKE_CURRENT_LIST_DIR": [here]}  # fmt: skip
@@ -289,7 +289,7 @@ def _all_replaced(words: Sequence[str], variables: dict[str, list[str]]) -> tupl
 
 
 def _replaced(word: str, variables: dict[str, list[str]]) -> list[str]:
-    """Replace the variables in a word; a variable that is the whole word can become several words."""
+    """Replace the variables in a word, which may give several words."""
     quoted = word.startswith('"')
     word = word.strip('"') if quoted else word
     alone = _VARIABLE.fullmatch(word)
@@ -316,7 +316,7 @@ def _globbed(folder: Path, patterns: tuple[str, ...], *, deep: bool) -> Iterator
 
 
 def _programs(folder: Path, words: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield the files that an `install` command installs as programs: named files, or all files of a folder."""
+    """Yield the programs that an `install` command installs."""
     groups: dict[str, list[str]] = {}
     within: list[str] = []
     for word in words:

@@ -1,4 +1,4 @@
-"""Read every file of a workspace, and report which files cannot be read, and why. Nothing is executed."""
+"""Read every file of a workspace and report unreadable ones."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Examined:
 
 
 def examined(workspace: Workspace) -> Examined:
-    """Read every file of the packages. Each package of the result has all problems, sorted by file and line."""
+    """Read every file of the packages and return the packages with their problems."""
     found = _Examination(workspace)
     packages = tuple(found.package(one) for one in workspace.packages)
     return Examined(
@@ -89,7 +89,7 @@ class _Examination:
         return replace(package, problems=tuple(sorted(new, key=lambda one: (one.file, one.line, one.reason))))
 
     def _launch(self, file: Path) -> Iterator[Problem]:
-        """Yield the problems that may hide nodes of a launch file. Count the values known only on the robot."""
+        """Yield the problems that may hide nodes; count values known only on the robot."""
         yield from _text(file, _python_encoding if file.suffix == ".py" else _xml_encoding)
         launch = read_launch(file, self.workspace)
         for one in launch.problems:
@@ -103,7 +103,7 @@ class _Examination:
             yield from self._node(node)
 
     def _node(self, node: LaunchedNode) -> Iterator[Problem]:
-        """Yield a problem if a package of the workspace has no program that a launch file starts."""
+        """Yield a problem if a launched program of the workspace is missing."""
         if "$(" in node.package + node.executable or node.kind == "container" or not node.package:
             return
         package = self.workspace.package(node.package)
@@ -136,7 +136,7 @@ class _Examination:
 
 
 def _builds(package: Package, name: str) -> bool:
-    """Return whether the `CMakeLists.txt` of a package names a program; macros of other packages may build it."""
+    """Return whether a `CMakeLists.txt` names a program."""
     if name in (*package.compiled, *package.tests):
         return True
     try:
@@ -154,7 +154,7 @@ def _named(package: Package, name: str) -> list[Path]:
 
 
 def _python_files(package: Package) -> set[Path]:
-    """Return the Python files of programs and importable modules, except the files of packages inside this one."""
+    """Return a package's Python files, without those of inner packages."""
     found = {one.path for one in package.executables if one.path is not None}
     for root in package.modules:
         found |= {root.path} if root.path.is_file() else set(root.path.rglob("*.py"))

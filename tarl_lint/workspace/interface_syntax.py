@@ -17,7 +17,7 @@ SECTIONS: Final = {".msg": 1, ".srv": 2, ".action": 3}
 
 
 def mistakes(text: str, ending: str) -> Iterator[tuple[int, str]]:
-    """Yield the line and the reason of each line that is not a definition; line 0 is the whole file."""
+    """Yield line and reason of each invalid line; line 0 is the file."""
     sections = 1
     for number, line in enumerate(text.splitlines(), 1):
         code = line.strip()

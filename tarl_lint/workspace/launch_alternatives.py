@@ -1,4 +1,4 @@
-"""Values that depend on a condition known only on the robot: actions become conditional, other data becomes unknown."""
+"""Values that depend on a condition known only on the robot."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _parsed(text: str) -> ast.expr | None:
 
 
 def conditional(value: Any, condition: str, line: int) -> Any:
-    """Return a value that exists only under a condition: actions are conditional, other data is unknown."""
+    """Return a conditional value: actions become conditional, data unknown."""
     if isinstance(value, Action):
         assumed = combined(condition, value.values.get("assumed", ""))
         if assumed == value.values.get("assumed"):
@@ -72,7 +72,7 @@ def either(one: Any, other: Any, text: str, line: int) -> Any:
 
 
 def one_of(values: list[tuple[str, Any]], line: int) -> Any:
-    """Return the value that is one of several values, each under a condition. The conditions exclude each other."""
+    """Return one of several values with exclusive conditions."""
     if all(_actions(one) for _, one in values):
         return _one_of_actions(values, line)
     (text, one), *others = values
@@ -120,7 +120,7 @@ def _actions(value: Any) -> bool:
 
 
 def _one_of_actions(values: list[tuple[str, Any]], line: int) -> Any:
-    """Return the actions that are in all values, and all other actions as conditional actions."""
+    """Return the common actions, and the others as conditional ones."""
     lists = [_listed(one) for _, one in values]
     groups = [one[0] for one in lists if len(one) == 1 and _plain_group(one[0])]
     if len(groups) == len(values) and len({id(one) for one in groups}) > 1:

@@ -152,7 +152,7 @@ def _value(entity: Entity) -> Any:
 
 
 def _separated(parts: list[str], texts: bool) -> list[Any]:
-    """Return the list of an attribute with a separator: numbers or truth values if all parts are, otherwise strings."""
+    """Return a separated attribute as a list of numbers, truth values or strings."""
     if any("$(" in one for one in parts):
         return [[substitutions(one)] for one in parts]
     for kind in () if texts else (int, float, _TRUTHS.__getitem__):
@@ -169,7 +169,7 @@ def _condition(entity: Entity) -> dict[str, Condition]:
 
 
 def substitutions(text: str) -> Any:
-    """Parse the substitutions `$(…)` in a string; a string without substitutions is returned unchanged."""
+    """Parse the substitutions `$(…)` in a string."""
     parts: list[Any] = []
     place = 0
     while (start := text.find("$(", place)) >= 0:
@@ -184,7 +184,7 @@ def substitutions(text: str) -> Any:
 
 
 def _end(text: str, start: int) -> int:
-    """Return the index of the parenthesis that closes the first parenthesis after `start`; -1 if there is none."""
+    """Return the index of the matching closing parenthesis, or -1."""
     depth = 0
     for index in range(start + 1, len(text)):
         depth += {"(": 1, ")": -1}.get(text[index], 0)

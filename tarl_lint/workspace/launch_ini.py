@@ -30,7 +30,7 @@ class IniFile:
         self._parsed = configparser.ConfigParser(interpolation=None)
 
     def read(self, names: Any, *_: Any, **__: Any) -> list[str]:
-        """Read files and return the names of those that exist. Raise OpaqueError for a file outside the workspace."""
+        """Read files; return the existing ones. Raise OpaqueError outside the workspace."""
         found = []
         for name in [names] if not isinstance(names, list | tuple) else names:
             place = self._inside(name)
@@ -42,7 +42,7 @@ class IniFile:
         return found
 
     def read_string(self, text: Any, *_: Any) -> None:
-        """Read a string. Raise OpaqueError if the string is malformed or if values refer to others."""
+        """Read a string. Raise OpaqueError if it is not plain."""
         try:
             self._parsed.read_string(text)
         except configparser.Error as error:

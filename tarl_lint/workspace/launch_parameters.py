@@ -1,4 +1,4 @@
-"""The parameters of a launched node: those that the launch file sets for the node, and for the namespaces around it."""
+"""The parameters that a launch file gives a node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The paths through a launch file that are possible under unknown conditions: branches, calls, loops, names."""
+"""The possible paths through a launch file with unknown conditions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Branch:
 
 @dataclass
 class Frame:
-    """A call of a function: the values returned so far, each under a condition, and the conditions around the call."""
+    """A function call with its conditional returned values."""
 
     branches: int
     returned: list[tuple[str, Any]] = field(default_factory=list)
@@ -53,7 +53,7 @@ class Names:
 
 @dataclass
 class Loop:
-    """A loop. For each `break` and `continue` reached under an unknown condition: the names and the condition."""
+    """A loop with its conditional `break` and `continue` statements."""
 
     begin: int  # number of conditions around the loop
     start: int  # number of conditions around the current iteration

@@ -64,7 +64,7 @@ _EVENTS: Final = ("on_exit", "on_start", "on_stdout", "on_stderr", "on_completio
 
 
 def module_file(path: Path, workspace: Workspace, name: str) -> Path | None:
-    """Return the file of a module that a package of the workspace installs, or that is in the folder of `path`."""
+    """Return the file of a module in the workspace or beside `path`."""
     first, *rest = name.split(".")
     homes = [one.path for each in workspace.packages for one in each.modules if one.name == first]
     beside = path.parent / first
@@ -269,7 +269,7 @@ def _as_bool(name: Any) -> Choice:
 
 
 def _rewritten(source_file: Any, param_rewrites: Any = None, **_: Any) -> Any:
-    """Return a parameter file of Navigation 2; its content is known if no value in it is replaced."""
+    """Return a parameter file of Navigation 2, if nothing is replaced in it."""
     return source_file if not param_rewrites else Unknown(0, "RewrittenYaml")
 
 

@@ -1,4 +1,4 @@
-"""Models of the functions with which Python launch files read workspace files: text, YAML, JSON, and existence."""
+"""Models of functions that read workspace files in launch files."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class OpenFile:
 
 
 def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
-    """Return models of the functions that read files. The models return Unknown for files outside the workspace."""
+    """Return models of reading functions; Unknown outside the workspace."""
 
     def inside(path: Any) -> Path | None:
         place = normal(str(path)) if isinstance(path, str | FilePath) else ""

@@ -128,7 +128,7 @@ class _Api:
         return Unknown(self.file.line, "Node")
 
     def resolved(self, arguments: Any, *_: Any, **__: Any) -> Any:
-        """Return the path of a launch file that is named by a path, or by a package and its own name."""
+        """Return the path of a launch file named by path or package."""
         words = (
             [one for one in arguments if isinstance(one, str)] if isinstance(arguments, list | tuple) else []
         )

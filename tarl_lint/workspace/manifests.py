@@ -29,7 +29,7 @@ class Manifest:
 
 
 def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
-    """Return the manifest in a folder; if it cannot be read, the package has the folder's name."""
+    """Return the manifest in a folder, by default with the folder's name."""
     path = folder / "package.xml"
     root, problem = _root(path)
     if root is None:
@@ -71,7 +71,7 @@ def _root(path: Path) -> tuple[ElementTree.Element | None, str]:
 
 
 def _kind(folder: Path, stated: str, depends: tuple[str, ...]) -> Kind:
-    """Return the build type: the stated one, else the one of the build tool dependency, else a guess from the files."""
+    """Return the stated build type, or a guess."""
     for kind in _BUILD_TYPES:
         if stated == kind:
             return kind

@@ -105,7 +105,7 @@ class Workspace:
     unread: tuple[Problem, ...] = ()
 
     def package(self, name: str) -> Package | None:
-        """Return the package of that name; if there is none, a hidden package of that name."""
+        """Return the package of that name, preferably not a hidden one."""
         return next((one for one in self._all() if one.name == name), None)
 
     def package_of(self, path: Path) -> Package | None:

@@ -12,7 +12,7 @@ from tarl_lint.workspace.model import Workspace
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """The file that a node runs, and the function that is its entry point; "" if the file itself is run."""
+    """The file and the entry point of a node; "" without one."""
 
     path: Path
     entry: str = ""

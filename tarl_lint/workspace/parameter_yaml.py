@@ -1,4 +1,4 @@
-"""The parameters that YAML in a launch file gives a node: plain YAML in ROS 1, files with sections in ROS 2."""
+"""The parameters that YAML in a launch file gives a node."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def sections(parsed: Any, above: str = "") -> Iterator[tuple[str, dict[Any, Any]
 
 
 def matches(pattern: str, node: str) -> bool:
-    """Return whether a section is for the node with the absolute name `node`. Section `gate` is only for `/gate`."""
+    """Return whether a section is for the node with the absolute name `node`."""
     parts = ["(/[^/]+)*" if part == "**" else "/[^/]+" if part == "*" else "/" + re.escape(part)
              for part in pattern.strip("/").split("/")]  # fmt: skip
     return re.fullmatch("".join(parts), node) is not None

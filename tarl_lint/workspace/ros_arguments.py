@@ -1,4 +1,4 @@
-"""Remappings and parameters in the arguments of a launched node: `in:=scan _rate:=5`, `--ros-args -r in:=scan`."""
+"""Remappings and parameters in a node's arguments."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Pairs = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """The settings that the arguments of a node give to ROS. `parameters` are private names with YAML values."""
+    """The ROS settings in a node's arguments."""
 
     remaps: Pairs = ()
     parameters: Pairs = ()
@@ -66,7 +66,7 @@ def ros2(arguments: str) -> Given:
 
 
 def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) -> Pairs:
-    """Return the remappings that ROS 2 applies to a node: the first for each name, without those for other nodes."""
+    """Return the remappings that ROS 2 applies to a node."""
     found: dict[str, tuple[str, str]] = {}
     for old, new in remaps:
         of, colon, name = old.rpartition(":")
@@ -76,7 +76,7 @@ def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) 
 
 
 def _is_name(text: str) -> bool:
-    """Return whether a string can be the name of a topic; nodes may get values in the same form: `debug:=false`."""
+    """Return whether a string can be a topic name, unlike `debug:=false`."""
     return _NAME.fullmatch(text) is not None and text not in ("true", "false", "True", "False")
 
 
@@ -90,7 +90,7 @@ def _words(arguments: str) -> list[str]:
 
 
 def plain(arguments: str, *, for_ros2: bool) -> tuple[str, ...]:
-    """Return the arguments of a node that are for its own program: without remappings, parameters and ROS options."""
+    """Return a node's arguments without those for ROS."""
     words = _words(arguments)
     if not for_ros2:
         return tuple(one for one in words if ":=" not in one)

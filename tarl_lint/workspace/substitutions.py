@@ -1,4 +1,4 @@
-"""Substitution arguments of ROS 1 launch files: `$(find …)`, `$(arg …)`, `$(eval …)`, `$(optenv …)`, `$(dirname)`."""
+"""Substitution arguments of ROS 1 launch files, such as `$(find …)`."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Scope:
         return replaced
 
     def symbolic(self, text: str) -> tuple[str, list[str]]:
-        """Return a string, with parts known only on the robot as `$(arg robot)`, and why they are unknown."""
+        """Return a string with unknown parts as `$(arg robot)`, and the reasons."""
         reasons: list[str] = []
 
         def replaced(found: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""The stack of calls of interpreted functions. For each generator, it also has the receiver of the yielded values."""
+"""The stack of interpreted calls, with receivers of yielded values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Taking = list[Any] | Callable[[Any], None]  # receives the values that the funct
 
 @dataclass(frozen=True)
 class _Frame:
-    """A call: the file of the function, and the function that receives the values that it yields."""
+    """A call: its file, and the function that receives its yielded values."""
 
     file: Path
     taking: Taking
@@ -55,7 +55,7 @@ class CallStack:
         self._frames.pop()
 
     def give(self, values: list[Any]) -> None:
-        """Add values that the current generator yields. Raises Enough if the generator may be endless."""
+        """Add yielded values. Raises Enough if the generator may be endless."""
         frame = self._frames[-1]
         if isinstance(frame.taking, list):
             frame.taking.extend(values)
@@ -77,7 +77,7 @@ class CallStack:
         keywords: dict[str, Any],
         owner: Class | None,
     ) -> Any:
-        """Interpret a call and return its value: a Stream for a generator, and Suspended for a context manager."""
+        """Interpret a call; return its value, a Stream or a Suspended."""
         if function.kind == "contextmanager":
             plain = dataclasses.replace(function, kind="")
             return Suspended(lambda entered: self._taken(run, entered, plain, (args, keywords, owner)))

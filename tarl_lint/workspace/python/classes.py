@@ -72,7 +72,7 @@ def defined(
 
 
 def _announce(made: Class, keywords: dict[str, Any]) -> None:
-    """Call the hooks for a new class: `__set_name__` of its attributes, `__init_subclass__` of its bases."""
+    """Call `__set_name__` and `__init_subclass__` for a new class."""
     for name, value in list(made.names.items()):
         if isinstance(value, Made) and value.has("__set_name__"):
             value.run("__set_name__", made, name)
@@ -85,7 +85,7 @@ def _announce(made: Class, keywords: dict[str, Any]) -> None:
 
 
 def _annotated(statement: ast.ClassDef) -> Iterable[tuple[str, str]]:
-    """Yield the names and annotations of the annotated attributes of a class, without class variables."""
+    """Yield the annotated attributes of a class, without class variables."""
     for one in statement.body:
         if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name):
             text = ast.unparse(one.annotation)
@@ -152,7 +152,7 @@ def instance(run: Evaluation, kind: Class, args: list[Any], keywords: dict[str, 
 
 
 def _new(kind: Class, args: list[Any], keywords: dict[str, Any]) -> Any:
-    """Return a new object without attributes, or the result of the class's own `__new__`."""
+    """Return a new object, or the result of the class's `__new__`."""
     made = kind.find("__new__")
     if made is not None and isinstance(made[0], Function):
         return made[0].run(made[0], [kind, *args], keywords, made[1])
@@ -203,7 +203,7 @@ def _fill(
 
 
 def _passed(kind: Class) -> list[str]:
-    """Return the names of the arguments that are passed to `__post_init__` instead of being stored."""
+    """Return the names of the arguments of `__post_init__`."""
     return [name for one in reversed(kind.order()) for name in one.options.get("passed", ())]
 
 

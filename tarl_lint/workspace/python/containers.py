@@ -1,4 +1,4 @@
-"""Constructors of Python's containers for interpreted files: lists, sets, dicts, and containers of `collections`."""
+"""Constructors of lists, sets, dicts and `collections`."""
 
 from __future__ import annotations
 

@@ -202,7 +202,7 @@ class Evaluator:
         return COMPARE[kind](left, right if many is None or isinstance(right, dict) else many)
 
     def _unsure(self, kind: type[ast.cmpop], left: Any, many: list[Any] | None) -> Any:
-        """Return the result of `in` or `not in` for a list with unknown elements; Unknown if it is not certain."""
+        """Return the result of `in`; Unknown if it is not certain."""
         for one in many or ():
             if one is left or (settled([left, one]) and one == left):
                 return kind is ast.In
@@ -277,7 +277,7 @@ MAYBE: Final = Unknown(0, "a comparison")
 
 
 def constant(text: str, names: Mapping[str, Any] | None = None) -> Any:
-    """Return the value of a Python expression; `Unknown` if not constant. Raises ValueError for invalid syntax."""
+    """Return an expression's value, or `Unknown`. Raises ValueError."""
     try:
         tree = ast.parse(text.strip(), mode="eval")
         return Evaluator({}).value(tree.body, Scope(dict(names or {})))

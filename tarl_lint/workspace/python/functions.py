@@ -20,7 +20,7 @@ _KINDS: Final = {
 
 
 def made_function(run: Evaluation, node: ast.FunctionDef, names: Scope, file: Path, enter: Any) -> Function:
-    """Return the function of a definition, with the values of its defaults; `enter` interprets its calls."""
+    """Return the function of a definition; `enter` interprets its calls."""
     spec = node.args
     positional = [*spec.posonlyargs, *spec.args]
     last = positional[len(positional) - len(spec.defaults) :]
@@ -64,7 +64,7 @@ def yields(node: ast.AST) -> bool:
 
 
 def decorated(run: Evaluation, function: Function, names: Scope) -> Any:
-    """Apply the decorators of a function and return the result; decorators of other libraries have no effect."""
+    """Apply the known decorators of a function."""
     made: Any = function
     for node in reversed(function.node.decorator_list):
         if isinstance(node, ast.Attribute) and node.attr in ("setter", "deleter", "getter"):

@@ -1,4 +1,4 @@
-"""What `import` statements of an interpreted file bind: models, names of libraries, and modules of the workspace."""
+"""What the `import` statements of an interpreted file bind."""
 
 from __future__ import annotations
 

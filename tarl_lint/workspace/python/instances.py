@@ -54,7 +54,7 @@ class Made:
         return found[0].run(found[0], [self, *args], keywords, found[1])
 
     def plain(self) -> Any:
-        """Return the object as a built-in value if its class is derived from tuple, list, a number or str."""
+        """Return the object as a built-in value, if its class derives from one."""
         if self.held is not None:
             return self.held
         if self.kind.unpacked:

@@ -1,4 +1,4 @@
-"""Interpret the constant statements of a file: assignments, loops, functions, classes, and `if` with known tests.
+"""Interpret the constant statements of a file.
 
 Neither the file nor its imports are executed; the caller supplies models of library functions.
 """
@@ -84,7 +84,7 @@ class Interpreter(Evaluator):
         return self.entered(function, list(args), {}) if isinstance(function, Function) else Unknown(0, name)
 
     def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return the value of a call of one of the file's functions or classes, or of a model."""
+        """Call a function, a class or a model."""
         before = self.line
         if self._calls.file == self.file:
             self.line = node.lineno
@@ -99,7 +99,7 @@ class Interpreter(Evaluator):
             self.line = before
 
     def _run(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return the value of a call of one of the file's functions or classes."""
+        """Call a function or class of the file."""
         if self._calls.is_full():
             return unknown(node)
         if isinstance(called, Class):

@@ -1,4 +1,4 @@
-"""Statements that leave the code around them: `return`, `break`, `continue` and `raise` of an interpreted file."""
+"""`return`, `break`, `continue` and `raise` of an interpreted file."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Left(Exception):  # noqa: N818 - control flow, never an error
 
 
 class Enough(Exception):  # noqa: N818 - control flow, never an error
-    """A generator of the file has yielded so many values that it may be endless."""
+    """A generator of the file may be endless."""
 
 
 class Raised(Exception):  # noqa: N818 - control flow of the file
-    """A `raise` of the file, or an exception that a constant operation raises; `error` is None if it is unknown."""
+    """An exception of the file; `error` is None if it is unknown."""
 
     def __init__(self, line: int, error: Any = None) -> None:
         self.line, self.error = line, error

@@ -52,7 +52,7 @@ def _copied(value: Any) -> Any:
 
 
 def _copy(value: Any, made: dict[int, Any], depth: int) -> Any:
-    """Return a deep copy of lists, dicts and objects; values that are shared stay shared."""
+    """Return a deep copy that keeps shared values shared."""
     if depth > 50:
         raise OpaqueError("too deep")
     if id(value) in made:
@@ -123,7 +123,7 @@ def _loaded(text: Any, **given: Any) -> Any:
 
 
 def _words(text: Any, **given: Any) -> list[str]:
-    """Return the result of `shlex.split`, and refuse None, for which `shlex.split` would read the standard input."""
+    """Return the result of `shlex.split`; refuse None."""
     if not isinstance(text, str):
         raise OpaqueError("not a text")
     return shlex.split(text, **given)
@@ -311,6 +311,6 @@ def function(made: Any, args: list[Any], keywords: dict[str, Any]) -> Any:
 
 
 def _listed(value: Any) -> Any:
-    """Return an argument in a form that the library knows: iterators and sets as lists."""
+    """Return an argument for the library: iterators and sets as lists."""
     found = items(value) if not isinstance(value, str | dict | tuple | Made | deque) else None
     return value if found is None else found

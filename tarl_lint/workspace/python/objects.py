@@ -39,7 +39,7 @@ class Function:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Class:
-    """A class of a file. `fields` are the fields of a data class, in order; `bases` are classes and library names."""
+    """A class of a file, with fields (of a data class) and bases."""
 
     name: str
     bases: tuple[Any, ...]
@@ -108,7 +108,7 @@ class Class:
         return list({id(one): one for one in found}.values())
 
     def with_value(self, value: Any) -> Any:
-        """Return the member of an enumeration, or the combination of flags, with a value; None if there is none."""
+        """Return the enumeration member or flags with a value, or None."""
         found = [one for one in self.names.values() if getattr(one, "kind", None) is self]
         return next((one for one in found if one.attributes["value"] == value), None)
 

@@ -22,7 +22,7 @@ class FilePath(PurePosixPath):
         return f"PosixPath({str(self)!r})"
 
     def resolve(self, *_: Any, **__: Any) -> FilePath | Unknown:
-        """Return the path without `..`; Unknown if it is relative, since the working directory is not known."""
+        """Return the path without `..`; Unknown if it is relative."""
         return FilePath(normal(str(self))) if self.is_absolute() else Unknown(0, str(self))
 
     def absolute(self) -> FilePath | Unknown:
@@ -40,7 +40,7 @@ def normal(path: str) -> str:
 
 
 def absolute(path: Any) -> Any:
-    """Return `os.path.abspath`; Unknown for a relative path, since the working directory is not known."""
+    """Return `os.path.abspath`; Unknown for a relative path."""
     text = str(path)
     return normal(text) if text.startswith("/") else Unknown(0, text)
 

@@ -1,4 +1,4 @@
-"""Values of interpreted Python files that are not data: unknown values, names of libraries, scopes, streams."""
+"""Values of interpreted files that are not data."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class SpentError(Exception):
 
 
 class OpaqueError(ValueError):
-    """The result of an operation is not constant, or too large. This is not an exception of the interpreted file."""
+    """The result of an operation is not constant, or too large."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Scope:
         return None
 
     def store(self, name: str, value: Any) -> None:
-        """Bind a name in this scope, or in the scope to which a `global` or `nonlocal` statement refers."""
+        """Bind a name in this scope, or in its `global` or `nonlocal` scope."""
         self.elsewhere.get(name, self).names[name] = value
 
     def outside(self) -> Scope:
@@ -124,7 +124,7 @@ class Field:
 
 
 class Stream:
-    """An iterator: a generator, or the result of `iter`, `map`, `zip` and the like. Its elements are read once."""
+    """An iterator, whose elements are read once."""
 
     __slots__ = ("endless", "values")
 
