@@ -22,7 +22,7 @@ class Origin:
     value: bool | int | float | None
     path: str
     pos: ir.Pos
-    setting: str = ""  # if the value was loaded from a file, its key in this file; else ""
+    setting: str = ""  # key of a value that was loaded from a file; else ""
 
 
 class Origins:
@@ -46,7 +46,7 @@ class Origins:
         if value is None:
             return frozenset()
         if value.pts:
-            # `min(value, limit)` with a loaded limit is not a constant if messages set the value
+            # `min(value, limit)` is not constant if messages set the value
             constant = self.graph.live.isdisjoint(value.deps)
             return self._loaded(value) if constant else frozenset()
         if not value.deps:
@@ -87,7 +87,7 @@ class Origins:
             literal = self.graph.literals.get(node)
             if literal is not None:
                 if not self.graph.live.isdisjoint(self.graph.data[node]):
-                    # the value is constant only until the first message, as in `gain * self.error`
+                    # constant only until the first message, as in `gain * self.error`
                     return None
                 value, pos, path = literal
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))

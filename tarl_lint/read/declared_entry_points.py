@@ -27,7 +27,7 @@ SETTINGS: Final = ("setup.py", "setup.cfg", "pyproject.toml")
 NAMING: Final = (
     "package.xml",
     "CMakeLists.txt",
-)  # files that list the plugin descriptions; a plugin description may have any name
+)  # files that list plugin descriptions, which may have any name
 LARGEST: Final = 500_000  # maximum size of a description (bytes)
 NAMED: Final = re.compile(r"(?<![\w./])(\w+(?:\.\w+)*)[.:](\w+)(?![\w./])")
 XML: Final = re.compile(r"[\w./-]+\.xml\b")

@@ -53,7 +53,7 @@ class _Comparison:
 
     def __init__(self, old: list[str], new: list[str], reading: Reading) -> None:
         self.lines: dict[int, int] = {}
-        # names of the functions that no analysis has read and whose bodies differ
+        # changed functions that no analysis has read
         self.changed: set[str] = set()
         self._old = old
         self._new = new

@@ -29,7 +29,7 @@ class Module:
     tree: ast.Module
     is_package: bool = False
     started: tuple[str, ...] = ()  # entry points declared by the package
-    # whether the file belongs to an installed package; nothing in such a package is started or reported
+    # whether the file is installed; installed files are neither started nor reported
     installed: bool = False
 
     def answer(self, question: Callable[[str], bool]) -> bool:

@@ -35,7 +35,7 @@ def grouped(findings: Sequence[Finding]) -> tuple[Group, ...]:
     """Return the findings by package, sorted by name. Packages whose code is not run on the robot come last."""
     aside = tuple(f for f in findings if _ASIDE.search(f.span.path))
     if len(aside) == len(findings):
-        aside = ()  # if all findings are in code such as examples and tests, group the findings by package
+        aside = ()  # findings only in examples and tests are grouped by package
     by_package: dict[str, list[Finding]] = {}
     for finding in findings:
         if finding not in aside:

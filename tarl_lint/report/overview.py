@@ -9,10 +9,10 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Flow
 from tarl_lint.report.line import Line, Style, View, columns
 
-MANY: Final = 6  # number of publish calls; a report with fewer of them fits on a screen
+MANY: Final = 6  # reports with fewer publish calls fit on a screen
 _WIDE: Final = 110  # width in columns if there is no terminal
 _WIDEST_NAME: Final = 30
-# maximum number of possible topics of a call that are shown in full; more are abbreviated
+# maximum number of topics of a call that are shown in full
 _ALTERNATIVES: Final = 4
 
 

@@ -150,7 +150,7 @@ def _callbacks(evidence: Evidence, records: Sequence[SourceRecord]) -> list[tupl
     """Return the callbacks of the subscriptions at one line, with their files; empty if one callback is unknown."""
     found: list[tuple[Function, str]] = []
     if records[0].kind != "topic" or "ubscri" not in records[0].api:
-        return found  # the rule is about subscriptions: a service handler is allowed to ignore its request
+        return found  # a service handler is allowed to ignore its request
     for record in records:
         for node in sorted(record.nodes):
             place = evidence.machine.graph.places[node]

@@ -125,7 +125,7 @@ def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
     if call is None or statement is None:
         return True
     if any(keyword.arg == "event_callbacks" for keyword in call.keywords):
-        # this publisher may exist only for its event callbacks, for example to detect subscribers
+        # this publisher may exist only for its event callbacks
         return True
     if isinstance(statement, ast.Expr):
         return False

@@ -148,7 +148,7 @@ def _of_known_programs(system: System) -> Iterator[tuple[str, Instance, Endpoint
     """Yield the commands of programs that are known without source, such as teleoperation and multiplexers."""
     for topic, instance, end in system.named("publishes"):
         known = instance.interface is None and not instance.node.condition and end.span == place_of(instance)
-        # a bridge that works in both directions publishes the messages of other nodes
+        # a two-way bridge publishes messages of other nodes
         both = any(name == topic for name, _ in instance.named("subscribes"))
         if known and not both and is_command(end.type, (topic,)):
             yield topic, instance, end

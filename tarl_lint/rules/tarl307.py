@@ -286,7 +286,7 @@ def _elsewhere(setting: Setting, instances: list[Instance], system: System) -> I
     named = list(sections(_parsed(setting)))
     for pattern, values in named:
         own = pattern.strip("/")
-        # a section with a namespace is meant for that namespace, which another launch file may use
+        # a section with a namespace may be for another launch file
         if "/" in own or is_wildcard(pattern) or any(matches(pattern, one.name) for one in instances):
             continue
         meant = next(

@@ -232,7 +232,7 @@ def _unmatched(instance: Instance, old: str) -> bool:
     words = frozenset[str]()
     if instance.interface is not None:
         words = instance.interface.words - instance.interface.private_words - names
-    # the last part of a name may be placed below a namespace; a longer name is a different name
+    # the last part of a name may be below a namespace
     whole = resolved(old, namespace, own)
     said = any(whole.endswith(f"/{word.strip('/')}") for word in words if word.strip("/"))
     return not said and whole not in used

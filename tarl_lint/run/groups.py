@@ -17,7 +17,7 @@ from tarl_lint.run.gc_paused import without_collection
 from tarl_lint.run.progress import Tell, silent
 from tarl_lint.settings.config import Config
 
-# if there are fewer lines to analyse, starting processes takes more time than it saves
+# minimum number of lines for which starting processes saves time
 MANY_LINES: Final = 30_000
 
 
@@ -34,7 +34,7 @@ class Task:
         return sum(s.text.count("\n") for s in self.scripts) if self.analyse else 0
 
 
-# called with the report so far, and the files whose findings are final
+# called with the report so far and the final files
 Partly = Callable[[Report, frozenset[str]], None]
 
 

@@ -17,7 +17,7 @@ from tarl_lint.read.watched import Reading
 from tarl_lint.run.cache import Report
 from tarl_lint.settings.config import Config
 
-KEPT_ANALYSES: Final = 4  # number of analyses kept for each program; each is compared with the edited text
+KEPT_ANALYSES: Final = 4  # number of analyses kept per program
 Moves = Mapping[str, Mapping[int, int]]  # file → line before the edit → line after the edit
 
 

@@ -331,7 +331,7 @@ def _judge(
 
     def judged(entry: Accepted) -> bool:
         if entry.fingerprint.code.startswith(ARCHITECTURE):
-            # findings of TARL3 rules occur only in runs with --launch, so this run cannot judge them
+            # without --launch, TARL3 findings cannot be judged
             return False
         asked = config.enabled(entry.fingerprint.code) and entry.fingerprint.digest() not in unasked
         return asked and all(map(settled, entry.files))

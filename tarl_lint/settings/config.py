@@ -46,7 +46,7 @@ class Options:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     stdin: Stdin | None = None
     cache: bool = True
-    jobs: int | None = None  # number of processes; if None, the size of the run determines the number
+    jobs: int | None = None  # number of processes; None means by the size of the run
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | 
     path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
     if (
         isinstance(named, str) and path.exists() and not path.is_file()
-    ):  # opening a named pipe would block, and a foreign repository may contain one
+    ):  # a foreign repository may contain a named pipe, which would block
         raise ConfigError(f"The baseline {shown(path)} of the settings is not a regular file: name another.")
     return path if named is not None or options.write_baseline or path.is_file() else None
 

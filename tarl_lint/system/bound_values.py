@@ -73,7 +73,7 @@ def bound_values(inside: ast.AST, name: str, texts: Collection[str]) -> Iterator
             case ast.For(target=target, iter=over) | ast.comprehension(target=target, iter=over) if _names(
                 target, name
             ):
-                # a loop over a text yields letters, which are not strings of the program
+                # a loop over a text yields letters, which are no strings of the program
                 yield None if last_name(over) in texts else over
             case ast.withitem(optional_vars=target) if target is not None and _names(target, name):
                 yield None

@@ -40,7 +40,7 @@ from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import YAML, NoYamlError, content
 
 UNKNOWN: Final = "?"
-# prefix of the name of a service; with this prefix, the name stands for a server whose code is not analysed
+# prefix of the service of an unanalysed server
 SERVER: Final = "server of "
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
@@ -51,7 +51,7 @@ _NO_YAML: Final = (
     "TARL307 does not check its parameters, since reading them needs PyYAML: run pip install PyYAML"
 )
 
-# (program, known values of its parameters) → its interface, or the reason why it cannot be analysed
+# (program, known parameters) → its interface, or why it cannot be analysed
 Reader = Callable[[Program, Mapping[str, object]], Interface | SourceError | str]
 
 

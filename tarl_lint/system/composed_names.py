@@ -79,7 +79,7 @@ def _reached_by_all(
             return False
         for path, call in _calls_of(qualname, modules, outlines):
             around = outlines[path].qualname(call.lineno)
-            # a call of a base class's `__init__` may call that of one of several classes
+            # a call of a base `__init__` may reach several classes
             followed = (path, position(call)) in entered[qualname] or (
                 last_name(call.func) == _INIT and (around in entered or not around)
             )

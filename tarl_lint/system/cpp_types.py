@@ -33,7 +33,7 @@ _QUIET: Final = frozenset(
 )  # fmt: skip
 _MESSAGES: Final = re.compile(r"\w+_(?:msgs|srvs|interfaces|actions?|msg|srv)$")
 _GENERATED: Final = ("msg", "srv", "action")
-# headers that a library uses only to register its classes with a loader
+# headers that only register a library's classes with a loader
 _EXPORTS: Final = (
     "pluginlib/class_list_macros",
     "class_loader/register_macro",
@@ -44,7 +44,7 @@ _IMAGES: Final = frozenset(
 )  # headers of image_transport
 
 
-# (folder of a package, packages of the workspace) → the types; many nodes of a launch file have the same package
+# (package folder, workspace packages) → types; many nodes share a package
 _FOUND: dict[tuple[Path, int], frozenset[str] | None] = {}
 
 
@@ -93,7 +93,7 @@ def _names(folder: Path) -> tuple[frozenset[str], frozenset[str]] | None:
         names |= set(_NAME.findall(text))
         for header in _INCLUDE.findall(text):
             first, slash, rest = header.partition("/")
-            # headers without a folder belong to the system, or to the package, whose headers are read anyway
+            # headers without a folder belong to the system or to this package
             if header.startswith(_EXPORTS):
                 continue
             if slash and first not in ("..", ".") and not (folder / first).is_dir():

@@ -30,7 +30,7 @@ def driven(
     A publisher counts if a timer or a loop makes its publish call, and no flow ends there. The program must set some
     field of a message to a value other than zero: a node that only stops the robot does not count.
     """
-    # numbers may be commands, too; the topic's name is known only after the launch
+    # numbers may be commands, too, depending on the launched topic name
     sent = [one for one in machine.sinks.values() if one.kind == "topic" and any(
         is_command(kind, ("command",)) for kind in one.types)]  # fmt: skip
     if not sent or not any(_moves(module.tree) for module in modules):

@@ -22,7 +22,7 @@ def chains(
     """
     hops = [
         hop for hop in hops if hop.source != hop.sink
-    ]  # leave out hops from a topic to itself: with one, no chain could end at a topic that a node republishes
+    ]  # a hop from a topic to itself would hide chains that end at the topic
     from_topic: dict[str, list[Hop]] = {}
     for hop in hops:
         from_topic.setdefault(hop.source, []).append(hop)

@@ -26,7 +26,7 @@ class Rule(Protocol):
 ARCHITECTURE: Final = tuple(code for code in RULES if code.startswith("TARL3"))
 
 
-# rules about each program by itself; all other rules assume that the nodes of a system run together
+# rules about single programs; other rules assume nodes that run together
 _OF_PROGRAMS: Final = ("TARL306", "TARL309")
 
 

@@ -26,7 +26,7 @@ _CLIENTS: Final[Mapping[str, tuple[int, str]]] = {
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Scope = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.Module
 _ANY: Final = "*"  # stands for every attribute
-_ELEMENT: Final = "[]"  # end of the part of a path that stands for an element of a list
+_ELEMENT: Final = "[]"  # end of a path that stands for a list element
 
 
 class Held(NamedTuple):

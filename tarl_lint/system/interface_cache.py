@@ -11,9 +11,9 @@ from tarl_lint.read.source import Script, SourceError
 from tarl_lint.run.cache import Cache, digest, packed, unpacked
 from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 
-# number of additional entries to keep, for other launch files and for earlier versions of files
+# number of additional entries, for other launch files and file versions
 SPARE: Final = 1000
-# first item of an entry for a file with an error; the first item of an interface's entry is a path
+# first item of an entry for a broken file; in other entries, it is a path
 _BROKEN: Final = 0
 
 

@@ -166,7 +166,7 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:
         if any(MARK in one for one in topics):
-            return ()  # outside a launch file, the parameter's value and therefore the name are unknown
+            return ()  # without a launch file, the parameter and the name are unknown
         return tuple(sorted({names.get(one.lstrip("/"), one) for one in topics}))
 
     source, sink = flow.source, flow.sink

@@ -95,7 +95,7 @@ _PACKAGES: Final[Mapping[str, str]] = {
     "ros_gz_sim": _CONTROL,
     "rosapi": "",
     "tf2_web_republisher": "",
-    # types that the tools of RViz publish; the types that RViz displays are left out
+    # types that RViz's tools publish, without those that it displays
     **dict.fromkeys(("rviz", "rviz2"), "PoseStamped PoseWithCovarianceStamped PointStamped InteractiveMarkerFeedback"),
 }  # fmt: skip
 # programs without topics of the types that rules examine
@@ -127,7 +127,7 @@ _TYPED: Final[Mapping[str, _Typed]] = {
     "usb_cam/usb_cam_node": ("", "~image_raw:Image ~camera_info:CameraInfo"),
     "v4l2_camera/v4l2_camera_node": ("", "image_raw:Image camera_info:CameraInfo"),
 }  # fmt: skip
-# packages whose programs have no further topics of velocities and joysticks than those above
+# packages without further velocity and joystick topics
 _TOLD: Final = ("joy", "joy_linux", "teleop_twist_joy", "teleop_twist_keyboard", "move_base")
 _TOLD_TYPES: Final = frozenset(["Twist", "TwistStamped", "Joy"])
 # parameters with which a program publishes TwistStamped in place of Twist
@@ -175,7 +175,7 @@ def typed(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
     topics = _TYPED.get(f"{package}/{program}")
     if topics is None:
         return Seen()
-    # twist_mux of ROS 2 uses TwistStamped by default since 4.4.0, and Twist before
+    # twist_mux of ROS 2 uses TwistStamped by default since 4.4.0
     usual: object = None if ros2 and package == "twist_mux" else False
     stamped = next((values[one] for one in _STAMPED if one in values), usual)
     span = place_of(instance)

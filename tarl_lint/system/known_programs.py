@@ -68,7 +68,7 @@ _ROS1: Final[Mapping[str, _Names]] = {
         _CLOUD,
     ),
 }  # fmt: skip
-# components of ROS 2: package, class without the package, program of the same code
+# ROS 2 components: package, class, program with the same code
 _COMPONENTS: Final[Mapping[tuple[str, str, str], _Names]] = {
     ("image_proc", "RectifyNode", "rectify_node"): ("@image", ":image_rect"),
     ("image_proc", "DebayerNode", "debayer_node"): (":image_raw", ":image_mono :image_color"),

@@ -19,7 +19,7 @@ _REGISTERS: Final[Mapping[str, tuple[tuple[int, str], tuple[int, str], tuple[str
     "SimpleActionServer": ((1, "ActionSpec"), (2, "execute_cb"), ("Goal",)),
     "ActionServer": ((1, "action_type"), (3, "execute_callback"), ("@",)),
 }
-HANDLE: Final = "@"  # end of the type of a goal handle, whose `request` is the goal
+HANDLE: Final = "@"  # end of a goal handle's type; its `request` is the goal
 
 
 def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str, int]]]:

@@ -21,7 +21,7 @@ from tarl_lint.workspace.name_resolution import joined, remapped
 
 Role = Literal[
     "publishes", "subscribes", "serves", "calls", "performs", "asks"
-]  # what a node does with a topic, service or action; `asks` means that it sends goals to the server of an action
+]  # what a node does with a name; `asks` means sending goals to an action server
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,8 +149,8 @@ class Instance:
     interface: Interface | None = None
     unread: str = ""
     known: Seen = Seen()  # known facts about a node that could not be read
-    silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
-    # if the code of the node could not be read: those remappings of its launch groups that the node can use
+    silent: bool = False  # whether the node publishes nothing that other nodes subscribe to
+    # for an unread node: the usable remappings of its launch groups
     meant: tuple[tuple[str, str], ...] = ()
     broken: SourceError | None = None
 

@@ -16,7 +16,7 @@ from tarl_lint.system.bound_values import Function, binds, bound_values, is_empt
 from tarl_lint.trees import last_name
 
 _Scope = Function | ast.Lambda | None
-# functions and methods whose result is composed of their arguments and, for a method, of its object
+# functions whose result is composed of their arguments or their object
 _MADE: Final = frozenset(
     ["sorted", "reversed", "enumerate", "zip", "list", "tuple", "set", "frozenset", "dict", "str", "chain", "product",
      "items", "keys", "values", "format", "join", "get", "copy", "range", "len", "int", "OrderedDict"]

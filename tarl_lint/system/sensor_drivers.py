@@ -102,14 +102,14 @@ SENSORS: Final = (
         "relposned hp",
     ),
 )  # fmt: skip
-# further words by which a driver of a sensor is recognised; the words of its topics are not known
+# further words that identify a sensor driver
 _OTHERS: Final = frozenset(["barometer", "rfid", "barcode"])
-# words that show that a package is more than the driver of a sensor
+# words of packages that are more than a sensor driver
 _ACTIVE: Final = re.compile(
     r"follow|control|nav(?!sat)|track|servo|drive(?!r)|slam|pilot|guard|safe(?!tyscan)|stop|avoid|teleop|plan|fus|"
     r"filter|base|robot|sim|odom|match|joint|tilt|goal|map|graph|mount|(?<![a-z])pan(?![a-z])"
 )
-# words that show that a program processes the data of a sensor; such a program may publish results of any type
+# words of programs that process sensor data and may publish any type
 _PROCESSING: Final = re.compile(
     r"detect|segment|cluster|proc|percept|recogn|obstacle|people|person|human|face|leg|object|estimat|merg|assembl|"
     r"conver|(?<![a-z])to(?![a-z])|[a-z]2[a-z]|view|display|record|server|bridge|relay|mux|throttle|transform|fake|"
@@ -122,7 +122,7 @@ _SIGN: Final = re.compile(
 )
 # types that drivers of sensors do not use
 _NEVER: Final = COMMANDS | {"Joy", "Path", "OccupancyGrid", "JointState", "PoseArray"}
-# words in the names of packages and programs that say nothing about their topics
+# words in package and program names that say nothing about topics
 _EMPTY: Final = frozenset(
     ["ros", "node", "nodelet", "driver", "drivers", "component", "generic", "caller", "py", "exe"]
 )

@@ -21,7 +21,7 @@ _WATCHDOGS: Final = re.compile(
     r"watchdog|deadline|liveliness|SubscriptionEventCallbacks|heartbeat|deadman|wait_for_message|threading\.Timer\(|"
     r"oneshot\s*=\s*True"
 )
-# uses of the time that compare no times: pauses, timers, and the stamps of messages
+# uses of time that compare no times: pauses, timers, stamps
 _SLEEPS: Final = re.compile(
     r"\bheader\.stamp\s*=(?!=)[^,\n]*|\bstamp=[^=,\n][^,\n]*\(\)|"
     r"\btime\.sleep\(|\bimport time\b|\bDuration\([^)]*\)|create_(wall_)?timer\([^)]*\)|rospy\.Timer\([^)]*\)"
@@ -68,7 +68,7 @@ class Program:
         self._texts = {module.path: module.text for module in modules}
         self._trees = {module.path: module.tree for module in modules}
         self._functions: dict[str, list[tuple[str, _Function | ast.Module]]] = {}
-        # function → its callers, and whether each caller calls it in a loop
+        # function → its callers, and whether each calls it in a loop
         self._callers: dict[str, list[tuple[str, bool]]] = {}
         for module in modules:
             self._functions.setdefault("", []).append((module.path, module.tree))

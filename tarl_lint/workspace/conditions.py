@@ -17,7 +17,7 @@ _COMPARED: Final = re.compile(r"(.+?)\s*(==|!=)\s*(.+)", re.DOTALL)
 _EQUALS: Final = re.compile(r"\$\((not-)?equals (\$\([^()]*\)|\S+) (\$\([^()]*\)|\S+)\)")
 _Literal = tuple[
     str, str | None, bool
-]  # triples: the tested expression, the constant with which it is compared, and whether the two must be equal
+]  # (tested expression, compared constant, whether they must be equal)
 
 
 def combined(outer: str, inner: str) -> str:
@@ -39,7 +39,7 @@ def exclusive(one: LaunchedNode, other: LaunchedNode) -> bool:
 def _contradict(one: str, other: str, *, same_file: bool) -> bool:
     literals = [
         {each for each in _literals(text) if same_file or "$(" in each[0]} for text in (one, other)
-    ]  # a text without `$(` names a variable, and equal names in two files are different variables
+    ]  # equal names in two files are different variables, unlike texts with `$(`
     return any(_opposite(first, second) for first in literals[0] for second in literals[1])
 
 

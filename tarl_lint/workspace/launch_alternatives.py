@@ -12,10 +12,10 @@ from tarl_lint.workspace.launch_values import Substitution
 from tarl_lint.workspace.python.elements import plain
 from tarl_lint.workspace.python.evaluator import Unknown
 
-LONGEST: Final = 60  # maximum length of a condition, and of a value, in a symbolic text (characters)
+LONGEST: Final = 60  # maximum length of conditions and values in a symbolic text (characters)
 ABSENT: Final = Unknown(
     0, "nothing"
-)  # stands for a name that is not bound, or an element that does not exist
+)  # stands for an unbound name or a missing element
 _OPPOSITE: Final[Mapping[type[ast.cmpop], type[ast.cmpop]]] = {
     ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
@@ -55,7 +55,7 @@ def conditional(value: Any, condition: str, line: int) -> Any:
             return value
         return Action("group", value.line, {"actions": [value], "assumed": condition})
     if isinstance(value, tuple) and len(value) == 2 and plain(value[0]):
-        # of a pair, such as a remapping, only the second element becomes conditional
+        # only the second element of a pair becomes conditional
         return value[0], conditional(value[1], condition, line)
     if isinstance(value, list | tuple):
         return type(value)(conditional(one, condition, line) for one in value)

@@ -13,12 +13,12 @@ from tarl_lint.workspace.model import Problem, unreadable
 
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 MOST: Final = 5_000  # maximum number of elements of a file
-LINE: Final = "\0line"  # key of the line among the attributes; no XML attribute can have this name
+LINE: Final = "\0line"  # key of the line; no XML attribute can have this name
 _LISTS: Final = (
     "launch",
     "group",
     "timer",
-)  # keys of YAML whose value is a list of elements; each element is a mapping with its tag as key
+)  # YAML keys with a list of elements; each element maps its tag
 
 
 def xml_tree(text: str) -> Element:

@@ -14,7 +14,7 @@ class Branch:
 
     condition: str
     old: dict[int, Any]
-    # whether the condition holds until the end of the loop, instead of only until the end of the iteration
+    # whether the condition holds until the end of the loop, not of the iteration
     whole: bool = True
 
 

@@ -177,7 +177,7 @@ class _File:
                              ("composable_node_descriptions", "components")):  # fmt: skip
                 if old in given and (kind != "node" or old != "launch_arguments"):
                     given.setdefault(new, given.pop(old))
-            # copy the list: actions that are added to this group later must not change the list in the launch file
+            # a copy: later actions of this group must not change the launch file's list
             if kind == "group":
                 given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
             if self.file.condition:

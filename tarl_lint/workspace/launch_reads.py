@@ -149,7 +149,7 @@ def _yaml(source: Any, *_: Any, **__: Any) -> Any:
     if text is None:
         return Unknown(0, "yaml.load")
     try:
-        # a copy, because the launch file may change the value, and the parsed content is cached
+        # a copy, because the launch file may change the cached content
         return copy.deepcopy(_kept(content(Setting("", Path(), yaml=text))))
     except (NoYamlError, UnreadableError):
         return Unknown(0, "yaml.load")

@@ -46,7 +46,7 @@ class Runner:
     # the files through which the current action is included, with their arguments
     including: list[object] = field(default_factory=list)
     seen: int = 0
-    # names of the arguments that are declared under a condition and have no value
+    # conditionally declared arguments without a value
     unsure: set[str] = field(default_factory=set)
     events: int = 0  # number of event handlers that contain the current action
 
@@ -164,7 +164,7 @@ class Runner:
 
     def _include(self, action: Action, context: Context, condition: str) -> None:
         name = performed(action.values.get("source"), context)
-        # the source of the bridge is usually not in the workspace, because its package is installed
+        # the bridge is usually installed without its source
         if name.startswith(_GZ_BRIDGE):
             bridged = {
                 key: value for key, value in items_of(action.values.get("arguments")) if isinstance(key, str)

@@ -26,7 +26,7 @@ FALSE: Final = frozenset({"false", "0"})
 DEEPEST: Final = 50  # maximum nesting of a value
 LONGEST: Final = 100_000  # maximum length of a text (characters)
 WORK: Final = 300_000  # maximum number of substitutions that are replaced for one launch file
-# names that expressions may use: the names in `math`, with and without the prefix `math.`
+# names for expressions: those of `math`, with and without `math.`
 _NAMES: Final = {"math": Library("math"), **{name.removeprefix("math."): value for name, value in LIBRARIES.items()
                                              if name.startswith("math.")}}  # fmt: skip
 

@@ -30,7 +30,7 @@ class _Place:
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # private parameters that all following nodes get
-    # the files through which the element is included, with their arguments, outermost first
+    # (file, arguments) of each including file, outermost first
     including: tuple[object, ...] = ()
     visit: int = 0  # number of the file, in the order in which files were included
     condition: str = ""  # the enclosing condition, if it is known only on the robot

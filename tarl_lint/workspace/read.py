@@ -115,7 +115,7 @@ def _package(found: _Found) -> Package:
     problems: list[Problem] = []
     if found.declared:
         declared, problems = manifest(found.folder)
-    else:  # for definitions outside packages, the name of the folder is the name of the package
+    else:  # outside packages, the folder's name is the package
         declared = Manifest(found.folder.name, "unknown")
     built = build(found.folder, declared)
     executables, modules, more = installed(found.folder, declared, found.scripts, built)

@@ -15,7 +15,7 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.python.evaluator import Library, Unknown, constant
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
-# environment variables that are always set, so that their defaults are never used
+# environment variables that are always set; their defaults are never used
 ALWAYS_SET: Final = frozenset({"HOME", "USER", "PATH"})
 _EVAL: Final = "$(eval "
 LONGEST: Final = 100_000  # maximum length of a text (characters)

@@ -13,7 +13,7 @@ from tarl_lint.rules.races.held_locks import FUNCTIONS, in_loop, locks_around
 from tarl_lint.trees import children, walk
 
 MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
-# type of a function that returns all values that the program assigns to a name
+# returns all values that the program assigns to a name
 Assigned = Callable[[str], list[ast.expr]]
 How = Literal["replaces", "adds", "inside", "reads", "length"]  # effect of an access on the value of a name
 CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])

@@ -92,7 +92,7 @@ class Locking:
                 if state is None:
                     continue
                 if thread in (MAIN, EXECUTOR) and _top(frame) and not (repeated or access.repeated):
-                    # this access is not reported: the main program may make it before the threads start
+                    # the main program may make this access before the threads start
                     continue
                 use = self._use(access, frame, thread, callers)
                 found.setdefault(state, {})[use] = None

@@ -122,7 +122,7 @@ def items(value: Any) -> list[Any] | None:
         return items(value.of)
     if isinstance(value, range):
         return list(value) if len(value) <= LARGEST else None
-    # a model of a library object over which a loop can iterate, such as an open file
+    # an iterable model of a library object, such as an open file
     if hasattr(type(value), "looped"):
         return value.looped()  # type: ignore[no-any-return] # a list or None
     return list(value) if type(value).__name__ in VIEWS else None

@@ -42,7 +42,7 @@ __all__ = ["Evaluator", "Library", "Unknown", "constant", "unknown"]
 
 STEPS: Final = 300_000  # maximum number of expressions and statements that are evaluated for one file
 FAILURES: Final = (ArithmeticError, LookupError, TypeError, ValueError, AttributeError, StopIteration)
-# exceptions that operations on constants may raise, and that a `try` in the file may catch
+# exceptions of constant operations that a `try` in the file may catch
 _CAUGHT: Final = (KeyError, IndexError, ZeroDivisionError, ValueError, StopIteration, AttributeError, OSError)
 
 

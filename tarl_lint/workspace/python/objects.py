@@ -26,7 +26,7 @@ class Function:
     scope: Scope
     defaults: dict[str, Any]
     file: Path
-    # callable that interprets this function with arguments, keywords and the class that defines the function
+    # interprets this function, given arguments, keywords and the defining class
     run: Callable[[Function, list[Any], dict[str, Any], Class | None], Any]
     kind: str = ""  # `staticmethod`, `classmethod`, `property`, `cached_property` or `contextmanager`
     setter: Function | None = None  # for a property: the function that sets it

@@ -21,7 +21,7 @@ except ImportError:
 
 MOST: Final = 20_000_000  # maximum number of ways to match that a search may try
 LONGEST: Final = 2_000  # maximum length of a pattern (characters)
-# number of positional arguments of a function after the pattern, before the flags
+# number of positional arguments between pattern and flags
 _POSITIONS: Final = {"sub": 3, "subn": 3, "split": 2}
 _REPEATS: Final = frozenset({"MAX_REPEAT", "MIN_REPEAT", "POSSESSIVE_REPEAT"})
 

@@ -57,7 +57,7 @@ class Scope:
         self.names, self.around = names, around
         self.elsewhere: dict[str, Scope] = {}  # names that `global` and `nonlocal` bind in another scope
         self.inner = inner  # whether this is the scope of a comprehension
-        # whether this is the scope of a class; functions inside the class do not see its names
+        # whether this is a class scope, whose names inner functions do not see
         self.of_class = of_class
 
     def find(self, name: str) -> tuple[Any] | None:
