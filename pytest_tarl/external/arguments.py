@@ -56,7 +56,7 @@ def setup(
     timeout: float,
     patience: float,
 ) -> Setup:
-    """Return checked arguments. Raise SettingsError for an empty command or `ready`, or if no ROS is installed."""
+    """Return checked arguments. Raise SettingsError."""
     parts = shlex.split(command) if isinstance(command, str) else [os.fspath(part) for part in command]
     topics = (ready,) if isinstance(ready, str) else tuple(ready)
     if not parts or not topics:
@@ -80,7 +80,7 @@ def setup(
 
 
 def _generation() -> str:
-    """Return the installed ROS, which connects the guardian to the simulator. Raise SettingsError without one."""
+    """Return the installed ROS. Raise SettingsError without one."""
     for library, name in (("rclpy", "ros2"), ("rospy", "ros1")):
         if PathFinder.find_spec(library) is not None:
             return name

@@ -1,4 +1,4 @@
-"""The test's connection to a guardian, the process that runs a simulator. The simulator's output goes to a file."""
+"""The test's connection to the guardian process of a simulator."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ class Client:
         return self._process.poll() is None
 
     def do(self, what: str, **arguments: Any) -> None:
-        """Send a command; do nothing if the guardian has ended, since an event reports that."""
+        """Send a command, unless the guardian has ended."""
         assert self._process.stdin is not None  # noqa: S101 - for the type checker
         with suppress(OSError, ValueError):
             self._process.stdin.write(json.dumps({"do": what, **arguments}) + "\n")
             self._process.stdin.flush()
 
     def stop(self) -> None:
-        """End the simulator and wait for the end of its processes, so that `output` is complete; discard events."""
+        """End the simulator and wait for its processes; discard events."""
         deadline = monotonic() + PATIENCE
         self.do("stop")
         while not self._gone and (left := deadline - monotonic()) > 0:
@@ -83,7 +83,7 @@ class Client:
         return new.decode(errors="replace")
 
     def last_words(self) -> str:
-        """Return the last lines of the simulator's output without consuming them: `output` still returns them."""
+        """Return the last lines of the output without consuming them."""
         lines = self._unread().decode(errors="replace").strip().splitlines()
         return " | ".join(line.strip() for line in lines[-TAIL:])
 

@@ -1,4 +1,4 @@
-"""Manage children, orphans and the parent of this process by prctl(2) and /proc; only Linux can adopt orphans."""
+"""Manage the children, orphans and parent of this process on Linux."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def outlive_the_test() -> None:
-    """Ignore the signals that end the test, because this process must outlive the simulator in order to end it."""
+    """Ignore the signals that end the test; this process outlives it."""
     for number in _IGNORED:
         signal.signal(number, signal.SIG_IGN)
 
@@ -43,7 +43,7 @@ def adopted() -> list[int]:
 
 
 def reap(which: int) -> None:
-    """Collect the exit statuses of ended children: all children for -1, those of process group n for -n."""
+    """Collect exit statuses: of all children for -1, or of group n for -n."""
     with suppress(ChildProcessError):
         while os.waitpid(which, os.WNOHANG)[0]:
             pass
@@ -74,7 +74,7 @@ def die_with_parent() -> Callable[[], None]:
 
 
 def wait_for_end_of_parent() -> None:
-    """Return when the parent of this process has ended. Raise OSError if the system cannot wait for this."""
+    """Wait for the end of this process's parent. Raise OSError."""
     if sys.platform != "linux":
         raise OSError
     parent = os.pidfd_open(os.getppid())

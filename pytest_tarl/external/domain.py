@@ -11,7 +11,7 @@ DOMAINS = range(1, 101)  # the ports of these domains are below the kernel's eph
 
 
 class Domain:
-    """A ROS domain that no other guardian on this machine uses. The kernel releases the claim when the process ends."""
+    """A ROS domain of this guardian, claimed until the process ends."""
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)

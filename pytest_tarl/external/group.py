@@ -74,7 +74,7 @@ class Group:
             os.killpg(self._process.pid, number)
 
     def _alive(self) -> bool:
-        """Return whether any process of the group runs. Ended processes that were not reaped do not count."""
+        """Return whether a process of the group runs, except ended ones."""
         if self._process.poll() is None:
             return True
         reap(-self._process.pid)

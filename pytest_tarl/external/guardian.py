@@ -32,7 +32,7 @@ LAST = 20.0  # time after the end of the test when a hanging simulator is killed
 
 
 class Guardian:
-    """The main loop of the process; it runs at most one simulator at a time."""
+    """The main loop of the process, for one simulator at a time."""
 
     def __init__(self, events: int) -> None:
         self._events = os.fdopen(events, "w", buffering=1, encoding="utf-8")
@@ -145,7 +145,7 @@ class Guardian:
         self._link.subscribe(topics)
 
     def _network(self, ros: str) -> dict[str, str]:
-        """Return the environment variables of the simulator's private network: a master in ROS 1, a domain in ROS 2."""
+        """Return the environment of the simulator's private network."""
         if ros == "ros1":
             self._master = Master()
             with xmlrpc.client.ServerProxy(self._master.uri) as master:
@@ -188,7 +188,7 @@ class Guardian:
 
 
 def main() -> None:
-    """Reserve stdout for events and run. Outlive the test even if Ctrl-C or a signal ends it."""
+    """Reserve stdout for events and outlive the test."""
     outlive_the_test()
     events = os.dup(1)
     os.dup2(2, 1)

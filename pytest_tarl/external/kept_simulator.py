@@ -1,4 +1,4 @@
-"""The simulator that runs on after its episode, so that later episodes can reset it instead of starting a new one."""
+"""A simulator that runs on and is reset for later episodes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.external.client import Client
 
 
 class Kept:
-    """The guardian of this process, and the simulator that it keeps running for further episodes."""
+    """This process's guardian and its running simulator."""
 
     def __init__(self) -> None:
         self.client: Client | None = None

@@ -1,4 +1,4 @@
-"""The guardian's node on the simulator's domain: topics, services and clock through an unpatched rclpy."""
+"""The guardian's rclpy node in the simulator's domain."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Say = Callable[[dict[str, Any]], None]
 
 @dataclass(frozen=True)
 class Turn:
-    """A call of a parameter service: the service, the time until it must answer, and the function to call then."""
+    """A call of a parameter service, with a limit and a continuation."""
 
     service: str
     deadline: float
@@ -40,7 +40,7 @@ class Turn:
 
 
 class Link:
-    """A node in its own rclpy context; it passes events to `say`. Use it in one thread."""
+    """A node in its own context; use it in one thread."""
 
     def __init__(self, domain: int, clock: str, say: Say) -> None:
         from rclpy.context import Context
@@ -77,7 +77,7 @@ class Link:
         self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
-        """Wait up to `seconds` for an event and handle it; handle messages sent before an answer before the answer.
+        """Wait for an event and handle it, after all earlier messages.
 
         In each cycle, rclpy's executor takes one message from each subscription and then the answers. An answer can
         therefore overtake the second message on a topic, which may be the state after a step.
@@ -104,7 +104,7 @@ class Link:
         self._context.try_shutdown()
 
     def subscribe(self, topics: list[str]) -> None:
-        """Pass on messages of these topics, too, once the simulator publishes them; report the ROS graph again."""
+        """Pass on messages of further topics, and report the graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -117,7 +117,7 @@ class Link:
             self._sent[topic] += 1
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service once it exists, in such a way that the simulator first handles all commands sent so far.
+        """Call a service after the simulator has handled all commands.
 
         Commands arrive before the call, because both go by UDP to one port of the simulator's participant. That is not
         enough. In each cycle, an executor looks for messages, then for requests, and takes one message from each
@@ -205,7 +205,7 @@ class Link:
             self._ask(names, partial(self._start, client, asked))
 
     def _asked_first(self) -> list[str]:
-        """Return the parameter services to call before a service call, each once for every command sent to its node."""
+        """Return the parameter services of all nodes that got commands."""
         times = Counter[str]()
         for topic, commands in self._sent.items():
             for name in self._receivers.get(topic, ()):
@@ -232,7 +232,7 @@ class Link:
             turn.then()
 
     def _skip_silent(self) -> None:
-        """Continue without a node that does not answer; its executor may run only within a step."""
+        """Continue without a node that does not answer."""
         turn = self._asking
         if turn is not None and monotonic() > turn.deadline:
             self._silent.add(turn.service)

@@ -1,4 +1,4 @@
-"""The guardian's node on the simulator's master: topics, services and clock through an unpatched rospy."""
+"""The guardian's rospy node on the simulator's master."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Say = Callable[[dict[str, Any]], None]
 
 
 def _pause() -> float:
-    """Return the pause, which is longer on a busy machine, since ROS 1 does not confirm that a message was handled."""
+    """Return the pause before a service call, longer on a busy machine."""
     try:
         waiting = os.getloadavg()[0] / available()
     except OSError:
@@ -42,7 +42,7 @@ def _pause() -> float:
 
 
 class LinkROS1:
-    """The only rospy node of the process; it passes events to `say`. Use it in one thread; rospy's threads wake it."""
+    """The only rospy node of the process; use it in one thread."""
 
     def __init__(self, clock: str, say: Say) -> None:
         import rosgraph
@@ -81,7 +81,7 @@ class LinkROS1:
             rospy.signal_shutdown("the episode is over")
 
     def subscribe(self, topics: list[str]) -> None:
-        """Pass on messages of further topics, once the simulator publishes them; report the graph again."""
+        """Pass on messages of further topics, and report the graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -201,7 +201,7 @@ class LinkROS1:
 
 
 def _service_type(service: str, uri: str) -> str:
-    """Return the type of a service, which its server reports only on a connection with a probe header."""
+    """Ask the server of a service for its type."""
     from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 
     place = urlparse(uri)

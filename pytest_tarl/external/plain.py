@@ -1,4 +1,4 @@
-"""Convert messages of ROS 1 and ROS 2 to and from the plain data that the test and the guardian exchange."""
+"""Convert ROS messages to and from plain data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Find = Callable[[str, str], Any]  # (package, name) → message class
 
 
 def to_plain(value: Any) -> Any:
-    """Convert a message, a sequence or a value to dictionaries, lists, numbers and strings."""
+    """Convert a message to dictionaries, lists, numbers and strings."""
     kinds = _fields(value)
     if kinds is not None:
         return {name: to_plain(getattr(value, name)) for name in kinds}

@@ -1,4 +1,4 @@
-"""Clean the output that a simulator printed while TARL ended it: remove the tracebacks that SIGINT causes."""
+"""Remove the tracebacks of SIGINT from a simulator's output."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _HANDLING = re.compile(r"^\[\w+\] \[[\d.]+\] \[rclpy\.signals\]: .*(?:\n|\Z)", r
 
 
 def without_interrupts(output: str) -> str:
-    """Remove what rclpy's handler of signals logs, and each Python traceback whose last exception shows an interrupt.
+    """Remove rclpy's signal messages and the tracebacks of interrupts.
 
     An interrupt is a KeyboardInterrupt or one of ROS's own exceptions for it. Other tracebacks remain, even if an
     interrupt caused their exception or occurred while their exception was being handled.

@@ -1,4 +1,4 @@
-"""An external simulator in an episode: start, reset and run it. The nodes' clocks show its time."""
+"""An external simulator in an episode, whose clock the nodes follow."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Simulator:
         return seconds(self._clock or 0)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the simulator's newest message on a topic, or None before the first one.
+        """Return a topic's newest message from the simulator, or None.
 
         If no node, sensor or argument names the topic, its messages are received only after the first call.
         """
@@ -70,7 +70,7 @@ class Simulator:
         return self._latest.get(topic)
 
     def begin(self) -> None:
-        """Start the simulator or reset the running one. Raise SimulatorError if the simulator does not become ready."""
+        """Start or reset the simulator. Raise SimulatorError if it does not get ready."""
         if self.setup.reset is None or KEPT.running != self.setup or not self._reset(self.setup.reset):
             self._start()
         self._wait(self._ready, self.setup.timeout, self._unready)
@@ -81,7 +81,7 @@ class Simulator:
         KEPT.running = self.setup
 
     def advance(self, dt: float) -> None:
-        """Run simulator and nodes for `dt` s of simulator time. Raise SimulatorLostError if the simulator stops."""
+        """Run simulator and nodes for `dt` s. Raise SimulatorLostError."""
         self._usable = False
         self._connect()
         self._target += nanoseconds(dt)
@@ -96,7 +96,7 @@ class Simulator:
         self._usable = True
 
     def end(self) -> None:
-        """Print the simulator's output; end the simulator unless a reset makes it usable for further episodes."""
+        """Print the simulator's output, and end it unless it can be reset."""
         _print(self.setup, self._client.output())
         if self.setup.reset is None or not self._usable:
             self._stop(self.setup)
@@ -151,7 +151,7 @@ class Simulator:
         return True
 
     def _forget(self) -> None:
-        """Forget the simulator's time before a start or reset, so that the simulator is not ready at once."""
+        """Forget the old time, so that the simulator is not ready at once."""
         self._heard.clear()
         self._clock = None
         self._waiting = []
@@ -161,7 +161,7 @@ class Simulator:
         return self._time > 0 and all(topic in connected for topic in self.setup.ready)
 
     def _settle(self) -> None:
-        """Wait until the ROS graph no longer changes, so that early commands are not lost."""
+        """Wait for a stable ROS graph, so that early commands arrive."""
         calm = monotonic()
         while monotonic() - calm < SETTLED:
             event = self._next(SETTLED / 4)
@@ -169,7 +169,7 @@ class Simulator:
                 calm = monotonic()
 
     def _connect(self) -> None:
-        """Receive topics that nodes subscribe to, and forward topics that the simulator subscribes to."""
+        """Connect the topics of nodes and simulator."""
         for topic in sorted(self._graph["subscribed"] - self._forwarded - {self.setup.clock}):
             self._forwarded.add(topic)
             self._ros.bus.subscribe(topic, self._forward(topic))
@@ -188,7 +188,7 @@ class Simulator:
         return lambda message: self._client.do("send", topic=topic, data=to_plain(self._theirs(message)))
 
     def _class(self, package: str, name: str) -> Any:
-        """Return a message class of the simulator's ROS. Raise UnsupportedApiError if the type is unknown."""
+        """Return a message class of the simulator. Raise UnsupportedApiError."""
         found = find_class("ros1" if self.setup.ros == "ros1" else "ros2", package, name)
         if found is None:
             raise unknown_type(package, name)
@@ -201,7 +201,7 @@ class Simulator:
         return message if type(message) is wanted else snapshot(message, wanted)
 
     def _stepped(self, step: Call) -> None:
-        """Run the nodes up to the time of the simulator's next step, then let the simulator make that step."""
+        """Run the nodes up to the next step, then make the step."""
         self._deliver(self._released())
         while self._time < self._target:
             before = self._time
@@ -215,7 +215,7 @@ class Simulator:
             self._waiting = []
 
     def _over(self, before: int, asked: int) -> bool:
-        """Return whether a step has ended: the clock moved, and each topic of `every_step` had a message.
+        """Return whether a step has ended, by its clock and topics.
 
         Messages that were sent before the step was requested may still arrive; they are ignored.
         """
@@ -224,7 +224,7 @@ class Simulator:
         )
 
     def _released(self) -> list[Event]:
-        """Return the waiting messages, sorted so that their order does not depend on the network."""
+        """Return the waiting messages in a reproducible order."""
         waiting, self._waiting = self._waiting or [], None
         return sorted(waiting, key=lambda event: str(event["topic"]))
 
@@ -237,7 +237,7 @@ class Simulator:
             self._ros.step(seconds(until - self._ros.scheduler.time))
 
     def _call(self, call: Call) -> int:
-        """Call a service and wait for the answer; return when it was requested, in ns of this machine's clock."""
+        """Call a service and wait; return the time of the request (ns)."""
         self._calls += 1
         number = self._calls
         self._client.do("call", id=number, service=call.service, request=dict(call.request))
@@ -346,7 +346,7 @@ class Simulator:
         )
 
     def _lost(self, text: str, why: str) -> SimulatorLostError:
-        """Return an error; its brief reason contains the last line of the simulator's output."""
+        """Return an error with the simulator's last line of output."""
         last = self._client.last_words().rpartition(" | ")[2]
         return SimulatorLostError(text, f"{why} (last output: {last})" if last else why)
 
@@ -356,7 +356,7 @@ class Simulator:
 
 
 def _ending(status: int) -> str:
-    """Return how a process ended, by its exit status; a negative status is the number of a signal."""
+    """Describe a process's exit status; negative ones are signals."""
     if status >= 0:
         return f"ended with status {status}"
     try:

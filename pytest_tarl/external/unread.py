@@ -1,4 +1,4 @@
-"""Count bytes that were sent to another process of this machine but that it has not read, by Linux's TCP tables."""
+"""Count sent bytes that another local process has not read."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
 
 def unread(connections: Iterable[tuple[int, int]]) -> int:
-    """Return how many bytes the other ends of connections have not read; 0 if there are no tables.
+    """Return the number of unread bytes; 0 if it is unknown.
 
     A connection is a pair: the own port and the other port.
 

@@ -1,1 +1,1 @@
-"""Watch an endless sequence of missions for a loss of performance and for a change of the world."""
+"""Watch endless missions for a loss or a change of the world."""

@@ -24,7 +24,7 @@ LATEST = 1e11  # seconds since 1970; a later time comes from a wrong clock
 
 @dataclass(frozen=True)
 class Expected:
-    """What a log must match to be comparable with the recording: its test and its sensors."""
+    """The test and the sensors that a log must have."""
 
     test: str
     sensors: tuple[str, ...]
@@ -32,7 +32,7 @@ class Expected:
     number: Mapping[Cell, int]
 
     def problem(self, start: Record, path: Path) -> str:
-        """Return why missions after this `start` record are not comparable, or an empty string if they are."""
+        """Return why missions after `start` are not comparable, or ""."""
         names = start.get("sensors", [])
         if [*names] != [*self.sensors]:
             return (
@@ -55,7 +55,7 @@ class Expected:
 
 @dataclass
 class Assembly:
-    """The state of reading an open log, which was read up to the offset `place`; includes an unfinished mission."""
+    """The state of reading a log, with its unfinished mission."""
 
     expected: Expected
     path: Path
@@ -119,7 +119,7 @@ class Assembly:
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
 
     def _take(self, record: Record, before: Spot | None) -> None:
-        """Process a record that does not end a counted mission; `before` is the previous record, or None."""
+        """Process a record that ends no counted mission."""
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":

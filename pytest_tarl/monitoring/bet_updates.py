@@ -64,13 +64,13 @@ def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
 
 
 def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
-    """Return the column indices of one of several robots, shape (bounds + scores,), in the order of a single robot."""
+    """Return the columns of one robot, shape (bounds + scores,)."""
     rows = np.append(np.arange(bounds) * robots + robot, bounds * robots + robot * scores + np.arange(scores))
     return rows.astype(np.int64)
 
 
 def _told(bound: Bound, total: Floats) -> Truths:
-    """Return which missions give an observation about a bound, boolean in the shape of the totals."""
+    """Return which missions count for a bound, in the shape of the totals."""
     testable = e_process.testable(float(bound.share(bound.least)))
     told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
     return told

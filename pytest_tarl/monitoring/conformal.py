@@ -68,7 +68,7 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
 
 
 def _earlier(bins: Ints) -> tuple[Ints, Ints]:
-    """Count, for each mission and score, the earlier missions with the same bin and those with a smaller bin."""
+    """Count the earlier missions in the same bin and in smaller bins."""
     count, scores = bins.shape
     mine = np.full((scores, TOGETHER), BINS, np.int8)
     mine[:, :count] = bins.T
@@ -90,7 +90,7 @@ def _counted(found: NDArray[np.bool_]) -> Ints:
 
 
 def joined(pool: Ints, bins: Ints) -> Ints:
-    """Return the pool, shape (scores, BINS), plus the scores in `bins`, shape (missions, scores)."""
+    """Return the pool (scores, BINS) plus the `bins` (missions, scores)."""
     score = np.broadcast_to(np.arange(bins.shape[1]), bins.shape)
     has = bins >= 0
     added = np.bincount(score[has] * BINS + bins[has], minlength=pool.size)

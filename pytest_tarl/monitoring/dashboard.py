@@ -1,4 +1,4 @@
-"""The status of `tarl watch` for dashboards: a versioned JSON document, specified by `watch.schema.json`."""
+"""The status of `tarl watch` as JSON (see `watch.schema.json`)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def write(document: dict[str, Any], path: Path) -> None:
 
 
 def line(document: dict[str, Any]) -> str:
-    """Return a document as a line of JSON in ASCII, so that no terminal can obey its text."""
+    """Return a document as one line of ASCII, harmless on terminals."""
     return json.dumps(document, allow_nan=False)
 
 

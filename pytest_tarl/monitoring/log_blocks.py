@@ -1,4 +1,4 @@
-"""Read complete records of a log in blocks; the result does not depend on where blocks begin."""
+"""Read complete records of a log in blocks of any size."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ AtOnce = tuple[bytes, bytes, bytes, bytes, bytes, Spot]
 
 
 class Block:
-    """Consecutive records of a log, read one by one, or three at a time if they form a mission."""
+    """Consecutive records, read singly or as missions of three."""
 
     def __init__(self, texts: list[bytes], spots: list[Spot]) -> None:
         self._texts = texts
@@ -51,7 +51,7 @@ class Block:
         return self._number < len(self._texts)
 
     def at_once(self) -> Iterator[AtOnce]:
-        """Yield missions in three consecutive records, up to the first record that does not begin one."""
+        """Yield missions of three records until another record comes."""
         match, lines = _AT_ONCE.match, self._lines
         while (found := match(lines, self._at)) is not None:
             self._at = found.end()
@@ -79,7 +79,7 @@ def end_of(spot: Spot) -> int:
 
 
 def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
-    """Return the complete records in the `size` bytes from `place` on, or a single longer record; there may be none."""
+    """Return the complete records from `place` on, or one longer record."""
     file.seek(place)
     data = file.read(max(size, HEAD))
     texts: list[bytes] = []

@@ -82,7 +82,7 @@ class LogReader:
         return self._open
 
     def _begun(self, file: BinaryIO) -> Progress | None:
-        """Identify the log and return the progress in it, or None if there is nothing to read."""
+        """Identify the log; return its progress, or None without a log."""
         magic = file.read(len(MAGIC))
         if not MAGIC.startswith(magic):
             self.problem = f"{self.path} is not a log of `tarl observe` of this version: name such a log."

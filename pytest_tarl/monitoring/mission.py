@@ -34,7 +34,7 @@ class Progress(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The cells of a `steps` record; `rows` are their rows in the recording, followed by -1.
+    """The cells of a `steps` record; `rows` are their recorded rows and -1.
 
     `new` holds the cells that the recording lacks. Tables are compared by identity, because comparing arrays gives no
     single truth value.
@@ -50,7 +50,7 @@ Steps = tuple[Table, bytes, bytes]
 
 
 class Mission(NamedTuple):
-    """A finished mission, its cells that the recording lacks, and the progress in its log.
+    """A finished mission, with its new cells and the log's progress.
 
     This run began to read the log at the progress `begun`, and has read up to the record at `last`.
     """
@@ -71,7 +71,7 @@ class Mission(NamedTuple):
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return the progress `begun` with new counts, moved to the record at `last` unless `last` is None."""
+    """Return the progress `begun` with new counts."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted
@@ -85,7 +85,7 @@ def mark(spot: Spot) -> str:
 
 
 def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
-    """Return mission index, cell row and reward of every step of all missions, each of shape (steps,)."""
+    """Return mission, cell row and reward of every step, each of shape (steps,)."""
     pieces = [one for mission in missions for one in mission.steps]
     reward = np.frombuffer(b"".join([rewards for _, _, rewards in pieces]), "<f8").astype(np.float64)
     owner = np.repeat(np.arange(len(missions)), [len(mission.steps) for mission in missions])
@@ -97,6 +97,6 @@ def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
 
 
 def latest(missions: Sequence[Mission]) -> dict[str, Progress]:
-    """Return the progress in each log after its last mission; keys are the ids of the logs."""
+    """Return log ID → progress after its last mission."""
     last = {one.begun.log: one for one in missions}
     return {log: one.progress for log, one in last.items()}

@@ -1,4 +1,4 @@
-"""Keep the start times of every n-th mission, to look up when a given mission took place."""
+"""Keep the start time of every n-th mission."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ MOST = 1024  # maximum number of stored times
 
 @dataclass
 class Moments:
-    """The start times of every `stride`-th mission, in seconds since 1970; the stride doubles when MOST are stored."""
+    """The start times of every `stride`-th mission, in seconds since 1970."""
 
     stride: int = 1
     times: list[float] = field(default_factory=list)
 
     def add(self, first: int, times: Sequence[float]) -> None:
-        """Store start times of consecutive missions; `first` is the number of the first one."""
+        """Store start times of consecutive missions from number `first` on."""
         number = first + -first % self.stride
         while number < first + len(times):
             self.times.append(times[number - first])
@@ -27,6 +27,6 @@ class Moments:
             number += self.stride - number % self.stride
 
     def at(self, number: int) -> float | None:
-        """Return the start time of the latest stored mission up to this number, or None."""
+        """Return the latest stored start time up to this mission, or None."""
         place = bisect_right(range(0, len(self.times) * self.stride, self.stride), number) - 1
         return self.times[place] if place >= 0 else None

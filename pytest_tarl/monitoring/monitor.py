@@ -62,7 +62,7 @@ class Monitor:
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order; no bit of the state depends on how missions are divided into calls."""
+        """Update with missions in order, however they are batched."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
@@ -75,13 +75,13 @@ class Monitor:
         self._count(sample.steps, sample.total, new)
 
     def judge(self, passed: NDArray[np.bool_], total: Floats, bins: NDArray[np.integer[Any]]) -> None:
-        """Update the processes with missions in order; `bins` are the bins of the scores, shape (missions, scores)."""
+        """Update the processes; `bins` has shape (missions, scores)."""
         for begin in range(0, len(passed), conformal.TOGETHER):
             some = slice(begin, begin + conformal.TOGETHER)
             self._judge(passed[some], total[some], bins[some].astype(np.int64))
 
     def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
-        """Update the processes with at most TOGETHER missions and add them to the pool."""
+        """Update the processes with at most TOGETHER missions."""
         first, count = self.counts.missions, len(bins)
         one_robot = passed[:, None], total[:, None], bins[:, None, :]
         self.pool = judged(

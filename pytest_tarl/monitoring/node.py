@@ -1,4 +1,4 @@
-"""A watch as a ROS node that publishes `diagnostic_msgs/DiagnosticArray` on /diagnostics, for rospy or rclpy."""
+"""A watch as a ROS node that publishes on /diagnostics."""
 
 from __future__ import annotations
 

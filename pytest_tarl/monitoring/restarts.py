@@ -61,7 +61,7 @@ class Processes:
 
 
 def begun(threshold: Floats) -> Processes:
-    """Return processes without observations; `threshold` is log2 of the evidence for an alarm, shape (processes,)."""
+    """Return new processes; `threshold` is log2 evidence, shape (processes,)."""
     count = len(threshold)
     return Processes(
         stake=np.zeros((BETS, count)),
@@ -196,13 +196,13 @@ def _started(processes: Processes, rows: Ints, products: _Products, first: int, 
 
 
 def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
-    """Return, for each column, the last mission at which `fresh` is true, or `earlier` if there is none."""
+    """Return each column's last mission with `fresh`, or `earlier`."""
     last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
     return np.where(fresh.any(axis=0), last, earlier)
 
 
 def _summed(stake: Floats) -> Floats:
-    """Sum stakes of shape (missions, bets, processes) over the bets, in an order that does not depend on the shape."""
+    """Sum stakes (missions, bets, processes) over bets in a fixed order."""
     total: Floats = stake[:, 0] + stake[:, 1]
     for bet in range(2, BETS):
         total += stake[:, bet]

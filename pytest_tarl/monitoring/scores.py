@@ -50,7 +50,7 @@ class Missions:
 
 @dataclass(frozen=True)
 class Scale:
-    """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
+    """The fitted model, its cells and the bin edges, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
     # whether the model was fitted for a cell; the last entry (False) stands for all other cells

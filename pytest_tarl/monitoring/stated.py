@@ -1,4 +1,4 @@
-"""The bounds of a recording: a minimum success rate and mean reward of future missions."""
+"""The bounds of a recording: success rate and mean reward."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Bound:
     high: float = 1.0
 
     def share(self, value: NDArray[np.float64] | float) -> Floats:
-        """Scale values from [low, high] to [0, 1], clipping values outside; keep the shape."""
+        """Scale values from [low, high] to [0, 1], clipped; keep the shape."""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
 

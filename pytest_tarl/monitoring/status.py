@@ -1,4 +1,4 @@
-"""The status of a monitor: the evidence of each test, its onset, and the changed cells."""
+"""The status of a monitor: evidence, onsets and changed cells."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FEWEST_NEW = 2  # minimum number of missions in a new cell that the status names
 
 @dataclass(frozen=True)
 class Moment:
-    """A mission, counted from 1, and its start in seconds since 1970, or None if unknown."""
+    """A mission's number from 1, and its start in seconds since 1970 or None."""
 
     mission: int
     time: float | None
@@ -41,7 +41,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Score:
-    """A score of whole missions or of one cell, and the direction in which new missions deviate."""
+    """A score of missions or of a cell, and the direction of its change."""
 
     name: str
     cell: Cell | None
@@ -50,7 +50,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Status:
-    """The status of a watch; the evidence is None for a bound that cannot be violated, such as 0."""
+    """The status of a watch; unviolable bounds have no evidence."""
 
     missions: int
     passed: int
@@ -74,12 +74,12 @@ class Status:
 
     @property
     def alarm(self) -> bool:
-        """Return whether an alarm was ever raised; alarms are not withdrawn, since α covers the whole watch."""
+        """Return whether an alarm was ever raised; alarms are final."""
         return self.below or self.drifted
 
     @property
     def error(self) -> float:
-        """Return the probability of any false alarm, including the probability that a recorded bound is wrong."""
+        """Return the probability of any false alarm or wrong bound."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)
@@ -113,7 +113,7 @@ def _testable(bound: Bound) -> bool:
 
 
 def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
-    """Return the largest evidence among the processes in these rows, relative to their shares of α."""
+    """Return the largest evidence in these rows, relative to α."""
     processes = monitor.processes
     unit = -processes.threshold[rows] - np.log2(monitor.alpha)
     now = restarts.log_evidence(processes)[rows] + unit

@@ -1,4 +1,4 @@
-"""A watch: growing logs, the monitor that judges their missions, and the saved state."""
+"""A watch of growing logs, with a monitor and a saved state."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed
 
 
 def expectation(fixture: Fixture, monitor: Monitor) -> Expected:
-    """Return the test and sensors that logs must match. Raise FixtureError if the recording has no sensors."""
+    """Return the test and sensors of the logs. Raise FixtureError."""
     if not fixture.sensors:
         raise FixtureError(f"The recording of {fixture.test} has no sensors.")
     names = tuple(sensor.name for sensor in fixture.sensors)

@@ -1,4 +1,4 @@
-"""`python -m pytest_tarl observe node.py`: run a node on its robot and log its missions."""
+"""`pytest_tarl observe node.py`: run a node and log its missions."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
 
 @contextmanager
 def _collected_before() -> Iterator[None]:
-    """Exclude existing objects from garbage collection within the context: long collections would delay the node."""
+    """Exclude existing objects from garbage collection, which would delay the node."""
     gc.collect()
     gc.freeze()
     try:

@@ -1,4 +1,4 @@
-"""Subscribe the observer to topics in the node's process, independently of the node's own subscriptions."""
+"""Subscribe the observer to topics, independently of the node."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Topics:
 
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
-    """Pass messages to the observer while a node of this client library runs. Raise LogError."""
+    """Pass messages to the observer while a node runs. Raise LogError."""
     # imported before any message type, because the library selects ROS 1 or ROS 2 messages
     import_module(library)
     listeners = _listeners(observer, topics)
@@ -89,7 +89,7 @@ def _class(name: str) -> type[Any]:
 
 
 def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
-    """Subscribe right after the node is initialised, so that the observer gets each message before the node does."""
+    """Subscribe before the node does, so that the observer gets messages first."""
     rospy = import_module("rospy")
     begin = rospy.init_node
 

@@ -1,4 +1,4 @@
-"""The log: a line that names the format, then records, each with a length and a checksum, appended one by one.
+"""The log: a format line and records with length and checksum.
 
 A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. All
 complete records can be read even if the writer was killed; the next writer removes an incomplete one.
@@ -31,7 +31,7 @@ Record = dict[str, Any]
 
 
 class LogFile:
-    """A log opened for appending, by one process at a time. Raise LogError if the log cannot be opened."""
+    """A log opened for appending by one process. Raise LogError."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -144,7 +144,7 @@ def _check_magic(file: BinaryIO, path: Path) -> None:
 
 
 def next_record(file: BinaryIO) -> bytes | None:
-    """Return the payload of the record at the file's position, or None if it is incomplete."""
+    """Return the next record's payload, or None if it is incomplete."""
     return next_payload(file, LARGEST)
 
 

@@ -1,4 +1,4 @@
-"""Observe a node: keep the latest sensor values, track rewards and missions, and send all of it to the writer process.
+"""Observe a node's sensors, rewards and missions for the writer process.
 
 In a control cycle, the observer only appends numbers to lists; numbers are not visited by garbage collection. Every
 `PERIOD` seconds, a thread moves the lists to memory that the writer process shares.
@@ -110,14 +110,14 @@ class Observer:
                 self._changes.append([monotonic() - self._begun, name, number])
 
     def step(self, reward: float) -> None:
-        """Close a step with its reward, or NaN if the test's `judge` computes it later."""
+        """Close a step with its reward; NaN if `judge` computes it later."""
         with self._lock:
             self._times.append(monotonic() - self._begun)
             self._readings += self._values
             self.stream.reward(reward)
 
     def begin(self) -> None:
-        """Begin a mission; if a mission is in progress, it ends as a success."""
+        """Begin a mission; a mission in progress ends as a success."""
         with self._lock:
             self.end(passed=True)
             self._flush()
@@ -143,7 +143,7 @@ class Observer:
             self.running = False
 
     def active(self) -> None:
-        """Note that the node is active; if `idle` is set, this begins a mission."""
+        """Note that the node is active; with `idle`, this begins a mission."""
         self._active = monotonic()
         if self._idle is not None and not self.running:
             self.begin()
@@ -169,7 +169,7 @@ class Observer:
         return tuple(known) if len(known) == len(self._bins) else None
 
     def _look(self) -> None:
-        """Send recorded data, end idle missions, and check whether the writer is still running."""
+        """Send recorded data, end idle missions and check the writer."""
         reported = False
         while not self._over.acquire(timeout=PERIOD):
             with self._lock:

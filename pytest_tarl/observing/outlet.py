@@ -1,4 +1,4 @@
-"""Send an observer's messages from the node's process through shared memory to a writer process."""
+"""Send messages through shared memory to the writer process."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Outlet:
 
     @property
     def unsent(self) -> int:
-        """Return the number of bytes that wait in this process or in the shared memory."""
+        """Return the number of unread bytes, here and in shared memory."""
         return self._held + self._ring.unread
 
     def put(self, *message: Any) -> None:
@@ -82,7 +82,7 @@ class Outlet:
             self._queue(data)
 
     def pump(self) -> None:
-        """Send as many queued pieces as now fit into the shared memory; check that the writer still runs."""
+        """Send the queued pieces that fit, and check the writer."""
         if os.getpid() != self._owner:
             return
         self._pumped += 1

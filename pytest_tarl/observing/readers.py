@@ -1,4 +1,4 @@
-"""Read and bin the values of a sensor quickly, because a node's control cycle waits for it.
+"""Read and bin sensor values fast, within a control cycle.
 
 The functions here return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and
 for values of the usual types. In all other cases, they call `reading` and `Sensor.bin`.

@@ -34,7 +34,7 @@ def shared_memory() -> int:
 
 
 class Ring:
-    """One end of the stream: one process calls `write`, and the other calls `read`, each from one thread at a time."""
+    """One end of the stream, with one writing and one reading thread."""
 
     def __init__(self, descriptor: int, *, writes: bool = False) -> None:
         self._memory = mmap.mmap(descriptor, 0)
@@ -45,7 +45,7 @@ class Ring:
 
     @property
     def unread(self) -> int:
-        """Return the number of bytes that were written but that the reader has not taken yet."""
+        """Return the number of written bytes that are still unread."""
         return self._counters[0] - self._counters[1]
 
     def write(self, data: bytes) -> bool:

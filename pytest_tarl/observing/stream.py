@@ -1,4 +1,4 @@
-"""A recorder that is emptied while the node runs, so that the memory stays bounded in missions of any length."""
+"""A recorder that is emptied while the node runs; bounds the memory."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Chunk:
 
 
 class Cut(NamedTuple):
-    """The events since the last cut, as plain values for `marshal`; `chunk` converts them to columns."""
+    """The events since the last cut, as plain values."""
 
     cells: list[Cell]  # cells that are new in this cut
     latched: list[int]  # for each mark in the buffer, the index of the cell that is current there
@@ -77,7 +77,7 @@ class Stream(Recorder):
             self._totals.append(float(total))
 
     def cut(self, drop: bool = False) -> Cut:
-        """Return and remove the events recorded since the last call; any thread may call this.
+        """Take the events since the last call, in any thread.
 
         To be fast, it only slices lists. With `drop` (for lack of memory), events are only counted; rewards and cells
         are kept.
@@ -97,7 +97,7 @@ class Stream(Recorder):
         return Cut(cells, latched, rewards, totals, threads)
 
     def relieve(self, most: int | None = None) -> None:
-        """Drop all queued events of each thread that has more than `most` queued entries; count them in `dropped`.
+        """Drop the events of threads with more than `most` entries; count them.
 
         The default of `most` is MOST_ENTRIES.
         """
@@ -149,7 +149,7 @@ def _in_order(one: Chunk) -> Chunk:
 
 
 def _cut(entries: list[Any]) -> list[Any]:
-    """Remove complete events from the front; each operation is atomic, since the owning thread may append meanwhile."""
+    """Remove complete events from the front, while the owning thread may append."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
         count -= 1  # the last entry is a site whose value the other thread has not appended yet

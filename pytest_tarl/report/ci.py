@@ -1,4 +1,4 @@
-"""Report a comparison to CI servers: properties of a JUnit test case, and a GitHub annotation."""
+"""Report a comparison as JUnit properties and a GitHub annotation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _IN_PROPERTY = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", 
 
 
 def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
-    """Return the JUnit properties as (name, value), without unknown values, in a fixed order."""
+    """Return the known JUnit properties in a fixed order."""
     verdict, repair = comparison.verdict, comparison.repair
     found = {
         "tarl_verdict": verdict.result,

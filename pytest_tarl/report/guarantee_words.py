@@ -12,7 +12,7 @@ WORLDS = {"offline": "designed", "repaired": "repaired", "nominal_repaired": "de
 
 
 def sentences(stated: Guarantee) -> Iterator[str]:
-    """Yield one sentence per bound; if all episodes are equal, only yield a sentence that they show a single world."""
+    """Yield one sentence per bound, or one about a single world."""
     sure = f"with {100 * stated.success.confidence:.5g} % confidence"
     every = "every one" if stated.passed == stated.episodes else f"{stated.passed}"
     if not stated.varied:

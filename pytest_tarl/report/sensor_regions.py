@@ -1,4 +1,4 @@
-"""Describe sets of cells by boxes (a range of bins per sensor) and in words, such as `x 4.0-7.0 m, terrain true`."""
+"""Describe sets of cells by boxes and in words."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAMED = 3  # maximum number of places named before "and 2 more"
 
 
 def boxes(cells: Iterable[Cell], apart: Collection[int] = ()) -> tuple[Box, ...]:
-    """Cover exactly `cells` with few boxes. Never merge bins of the sensors in `apart`."""
+    """Cover `cells` with few boxes, without merging the sensors `apart`."""
     single = [tuple((index, index) for index in cell) for cell in sorted(set(cells))]
     if not single:
         return ()

@@ -70,7 +70,7 @@ def _entries(
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
-    """Put `text` beside its label, wrapped between words; with `whole`, do not wrap it, as for commands to copy."""
+    """Put text beside its label; `whole` text is not wrapped."""
     body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
 
