@@ -73,9 +73,7 @@ def form_edits(
         taken.add(states[name])
         fill[name] = keeper.prefix + states[name]
     found = _written(_Place(source, statement, node, form, condition), fill)
-    if (
-        keeper is not None
-    ):  # declarations of state come first, because `global` has to precede the use
+    if keeper is not None:  # declarations of state come first, because `global` has to precede the use
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 

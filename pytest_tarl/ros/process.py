@@ -84,9 +84,7 @@ class Process:
         self._closing = False
         self._refused = 0
         self.launched = NOTHING  # parameters from a launch file
-        self.unset: dict[
-            str, None
-        ] = {}  # missing parameters that the node asked for, by the names it used
+        self.unset: dict[str, None] = {}  # missing parameters that the node asked for, by the names it used
         self.label = name  # name shown in messages; the node's name once the node has one
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}

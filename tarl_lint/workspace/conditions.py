@@ -15,9 +15,7 @@ from tarl_lint.workspace.launch_model import LaunchedNode
 _AND: Final = " and "
 _COMPARED: Final = re.compile(r"(.+?)\s*(==|!=)\s*(.+)", re.DOTALL)
 _EQUALS: Final = re.compile(r"\$\((not-)?equals (\$\([^()]*\)|\S+) (\$\([^()]*\)|\S+)\)")
-_Literal = tuple[
-    str, str | None, bool
-]  # (tested expression, compared constant, whether they must be equal)
+_Literal = tuple[str, str | None, bool]  # (tested expression, compared constant, whether they must be equal)
 
 
 def combined(outer: str, inner: str) -> str:

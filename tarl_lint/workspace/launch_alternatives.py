@@ -13,9 +13,7 @@ from tarl_lint.workspace.python.elements import plain
 from tarl_lint.workspace.python.evaluator import Unknown
 
 LONGEST: Final = 60  # maximum length of conditions and values in a symbolic text (characters)
-ABSENT: Final = Unknown(
-    0, "nothing"
-)  # stands for an unbound name or a missing element
+ABSENT: Final = Unknown(0, "nothing")  # stands for an unbound name or a missing element
 _OPPOSITE: Final[Mapping[type[ast.cmpop], type[ast.cmpop]]] = {
     ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,

@@ -21,9 +21,7 @@ class Made:
 
     def __init__(self, kind: Class, attributes: dict[str, Any], held: Any = None) -> None:
         self.kind, self.attributes = kind, attributes
-        self.held = (
-            held  # the built-in value of an object whose class derives from list or the like
-        )
+        self.held = held  # the built-in value of an object whose class derives from list or the like
 
     def has(self, name: str) -> bool:
         """Return whether the class defines a method."""
