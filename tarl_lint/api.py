@@ -67,7 +67,8 @@ class Analysis:
     def making(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
         """Return the statements outside the flows that pass constants to objects of the program's own classes.
 
-        An example is `self.left = Wheel(0.16)`. Each statement comes with the sites that use the object.
+        An example is `self.left = Wheel(0.16)`; `limited = partial(clamp, high=0.8)` counts, too. Each statement comes
+        with the sites that use the object.
         """
         return self.prober.making
 

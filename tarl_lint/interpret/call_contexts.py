@@ -223,6 +223,8 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
         elif value.pts:
             # an implicit receiver (`self`): the node passes on an object, not data
             ctx.graph.held.setdefault(node, set())
+        elif ctx.thorough and not any(isinstance(one, ir.Starred) for one in call.arguments):
+            ctx.graph.copies.add(node)  # a `functools.partial` has stored this argument
         passed.append(ctx.carry(value, node))
     keywords = dict(call.keywords)
     renamed: dict[str, Value] = {}
@@ -233,6 +235,8 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
         node = ctx.node(caller, ("argument", call.slot, name), "call")
         if name in keywords:
             literals.mark(ctx, node, keywords[name], value, caller)
+        elif ctx.thorough and None not in keywords and not value.pts:
+            ctx.graph.copies.add(node)  # a `functools.partial` has stored this argument
         renamed[name] = ctx.carry(value, node)
     return passed, renamed
 

@@ -21,8 +21,9 @@ from tarl_lint.queries.operands import constructions, fills_an_object, sets_timi
 FILLED: Final = frozenset(
     ["lib", "sequence", "mapping"]
 )  # kinds of objects that code fills with constants when it sets up a node
-# kind of the objects of the program's own classes that code makes when it sets up a node
-MADE: Final = frozenset(["instance"])
+# kinds of objects to which code passes constants when it sets up a node: those of the program's own classes, and
+# functions with stored arguments
+MADE: Final = frozenset(["instance", "partial"])
 
 
 @dataclass(slots=True)
@@ -44,7 +45,7 @@ class Seen:
         return frozenset(o.whole for value in self.values.values() for o in value.pts if o.kind in kinds)
 
     def made(self) -> frozenset[Obj]:
-        """Return the objects of the program's own classes that the statement makes."""
+        """Return the objects of the program's own classes, and the partial functions, that the statement makes."""
         results = (self.values.get(call.pos, BOTTOM) for call in constructions(self.statement))
         return frozenset(o.whole for value in results for o in value.pts if o.kind in MADE)
 
@@ -65,8 +66,8 @@ class Prober:
         self.timing: dict[SiteId, Step] = {}  # statements that wait or set a rate and are in no flow
         # statements that fill an object with constants and are in no flow, and the sites that use the object
         self.configuring: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
-        # statements outside all flows that pass constants to objects of the program's own classes, and the sites that
-        # use these objects
+        # statements outside all flows that pass constants to objects of the program's own classes or to partial
+        # functions, and the sites that use these objects
         self.making: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
         self._calls: dict[SiteId, Step] = {}
         self._files = {step.span.path for f in flows for step in f.steps}

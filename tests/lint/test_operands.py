@@ -132,6 +132,50 @@ def test_an_entry_of_a_parameter_is_a_constant_of_its_own(tmp_path, expression, 
     assert line[span.column - 1 : span.end_column - 1] == definition
 
 
+PARTIAL = """
+from functools import partial
+import rospy
+from std_msgs.msg import Float64
+LOW = -1.5
+def clamp(value, low, high):
+    return max(low, min(high, value))
+def scaled(factor, value):
+    return factor * value
+bounded = partial(clamp, low=LOW, high=1.25)
+halved = partial(scaled, 0.5)
+class Keeper:
+    def __init__(self):
+        self.out = rospy.Publisher("out", Float64, queue_size=1)
+        rospy.Subscriber("in", Float64, self.on)
+    def on(self, msg):
+        self.out.publish(bounded(msg.data){more})
+rospy.init_node("keeper")
+Keeper()
+rospy.spin()
+"""
+
+
+def test_arguments_that_a_partial_function_stores_are_constants(tmp_path):
+    analysis = analysed(tmp_path, node=PARTIAL.replace("{more}", " + halved(msg.data)"))
+    found = {
+        o.code: (o.value, o.definition.line) for step in analysis.sites for o in analysis.operands(step.site)
+    }
+    assert found == {"low": (-1.5, 5), "high": (1.25, 10), "factor": (0.5, 11)}
+
+
+def test_if_a_function_is_called_in_several_ways_the_stored_arguments_are_constants_of_the_partial_function(
+    tmp_path,
+):
+    analysis = analysed(tmp_path, node=PARTIAL.replace("{more}", " + clamp(msg.data, low=-0.1, high=0.2)"))
+    every = [o for step in analysis.sites for o in analysis.operands(step.site)]
+    assert [(o.code, o.value, len(o.definitions)) for o in every] == [
+        *[("low", None, 2), ("high", None, 2)],
+        *[("-0.1", -0.1, 0), ("0.2", 0.2, 0)],
+    ]
+    made = {o.code: o.value for site in analysis.making for o in analysis.operands(site)}
+    assert made == {"LOW": -1.5, "1.25": 1.25}
+
+
 def test_a_named_constant_refers_to_its_definition(tmp_path):
     analysis = analysed(tmp_path, node=NODE.replace("{expression}", "GAIN * msg.data"))
     (operand,) = analysis.operands(next(s.site for s in analysis.sites if s.code.startswith("v = ")))

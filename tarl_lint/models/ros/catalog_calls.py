@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import Final
 
-from tarl_lint.interpret import literals
+from tarl_lint.interpret import call_contexts, literals
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
@@ -96,6 +96,9 @@ def _partial(ctx: Interpreter, it: Invocation) -> Value:
     plain, named = it.arguments
     if not plain:
         return UNKNOWN
+    if ctx.thorough:  # the stored arguments keep their places, so that a repair can change their constants
+        stored, named = call_contexts.pass_arguments(ctx, it.arguments, it.frame, it.call)
+        plain = [plain[0], *stored[1:]]
     obj.describe((plain[0], plain[1:], named))
     obj.name = next((t.name for t in plain[0].pts), "")
     return pointer(obj)
