@@ -137,7 +137,7 @@ def _call_member(
     if obj.kind == "ext":
         return ctx.ops.call_library(ctx, f"{obj.name}.{name}", arguments, frame, expr)
     callables = _held_by(ctx, obj, member, name)
-    if obj.kind == "instance" and not member.pts:
+    if obj.kind == "instance" and not member.pts and not _of_namespace(expr.function):
         found = descriptors.computed(ctx, Value(base.deps, frozenset([obj])), name, frame, expr.function.pos)
         if found is not None:
             return call_value(ctx, found, arguments, frame, expr)
@@ -148,6 +148,14 @@ def _call_member(
     if obj.kind == "instance" and (made := made_by_library(ctx, obj, name)).pts:
         return call_value(ctx, heap.arrive(ctx, made, base.deps), arguments, frame, expr)
     return ctx.ops.call_method(ctx, Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)
+
+
+def _of_namespace(method: ir.Expr) -> bool:
+    """Return whether an expression is a method of `x.__dict__` or `vars(x)`, which the object itself represents."""
+    base = method.base if isinstance(method, ir.Attribute) else method
+    if isinstance(base, ir.Call):
+        return isinstance(base.function, ir.Name) and base.function.name == "vars"
+    return isinstance(base, ir.Attribute) and base.name == "__dict__"
 
 
 def made_by_library(ctx: Interpreter, obj: Obj, name: str) -> Value:

@@ -63,6 +63,21 @@ def scan(msg):
     out.publish(Pose(msg.data, 1.0).yaw)  # clean
     out.publish(Pose(1.0, msg.data).yaw)  # scan:data
     out.publish(Pose(1.0, msg.data).x)  # clean
+### attributes of an object with `__getattr__`, stored as entries of its `__dict__`
+class Latest:
+    def __init__(self):
+        self.__dict__.update(count=0, message=None)
+        vars(self).update(other=0)
+    def __getattr__(self, name):
+        return getattr(self.message, name)
+latest = Latest()
+def scan(msg):
+    latest.message = msg
+    latest.count += 1
+    latest.other += 1
+    out.publish(latest.count)  # clean
+    out.publish(latest.other)  # clean
+    out.publish(latest.data)  # scan:data
 ### properties made by a call
 class Motor:
     def __init__(self):
