@@ -23,6 +23,7 @@ from tarl_lint.memory.values import (
 )
 from tarl_lint.models import sizes
 
+OURS = frozenset(["closure", "bound", "class"])  # kinds of callables of the analysed files
 # maximum number of library objects whose method is called for each object; more objects count as one receiver
 MAX_ALIKE = 12
 
@@ -31,13 +32,29 @@ def call(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Value:
     """Evaluate a call expression."""
     if isinstance(expr.function, ir.Attribute):
         base = expressions.evaluate(ctx, expr.function.base, frame)
-        return _call_attribute(ctx, expr, expr.function, base, arguments(ctx, expr, frame), frame)
+        spreads = _ends_with_star(expr) and _has_methods(ctx, base, expr.function.name)
+        return _call_attribute(ctx, expr, expr.function, base, arguments(ctx, expr, frame, spreads), frame)
     function = expressions.evaluate(ctx, expr.function, frame)
-    return call_value(ctx, function, arguments(ctx, expr, frame), frame, expr)
+    spreads = _ends_with_star(expr) and bool(function.pts) and all(o.kind in OURS for o in function.pts)
+    return call_value(ctx, function, arguments(ctx, expr, frame, spreads), frame, expr)
 
 
-def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
-    """Evaluate arguments. The keywords `*` and `**` hold unpacked arguments whose number or names are unknown."""
+def _ends_with_star(expr: ir.Call) -> bool:
+    return bool(expr.arguments) and isinstance(expr.arguments[-1], ir.Starred)
+
+
+def _has_methods(ctx: Interpreter, base: Value, name: str) -> bool:
+    """Return whether all possible objects have an analysed method of this name."""
+    held = [heap.read_field(ctx, obj, name) for obj in base.objects if obj.kind != "ext"]
+    return len(held) == len(base.pts) > 0 and all(v.pts and all(o.kind in OURS for o in v.pts) for v in held)
+
+
+def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame, spreads: bool = False) -> Arguments:
+    """Evaluate arguments. The keywords `*` and `**` hold unpacked arguments whose number or names are unknown.
+
+    If `spreads` is True, an analysed function gets `*values` as last argument. If this is one of several sequences,
+    the first arguments are known, and only the rest is under `*`.
+    """
     plain: list[Value] = []
     named: dict[str, Value] = {}
     for argument in expr.arguments:
@@ -46,7 +63,8 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
             known = one_by_one(ctx, value)
             if len(value.pts) > 1 or frame.spread:
                 frame.spread[expr.slot] = value
-            if known is None and argument is expr.arguments[-1] and (ways := sizes.each_unpacked(ctx, value)):
+            last = spreads and known is None and argument is expr.arguments[-1]
+            if last and (ways := sizes.each_unpacked(ctx, value)):
                 least = min(map(len, ways.values()))
                 plain.extend(join_all(way[n] for way in ways.values()) for n in range(least))
                 more = join_all(one for way in ways.values() for one in way[least:])
