@@ -305,6 +305,10 @@ def number_within(
     """Return the value if it is a number of type `kind` within the bounds. Raise SettingsError otherwise."""
     takes = int if kind is int else (int, float)
     if isinstance(value, bool) or not isinstance(value, takes) or not low <= value <= high:
-        what = "a whole number" if kind is int else "a number"
-        raise SettingsError(f"{where}: {name} must be {what} from {low:g} to {high:g}, got {value!r}.")
+        within = (
+            f"whole number from {low:.0f} to {high:.0f}"
+            if kind is int
+            else f"number from {low:g} to {high:g}"
+        )
+        raise SettingsError(f"{where}: {name} must be a {within}, got {value!r}.")
     return kind(value)

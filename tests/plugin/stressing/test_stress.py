@@ -134,7 +134,10 @@ def test_message_gives_the_next_step_without_a_recording(tank: pytest.Pytester) 
         (("--tarl-stress", "--tarl-record"), "need separate runs"),
         (("--tarl-stress", "--tarl-holm"), "--tarl-holm needs --tarl-online"),
         (("--tarl-stress", "--tarl-ros=real"), "needs the embedded ROS"),
-        (("--tarl-stress", "--tarl-stress-budget=3"), "--tarl-stress-budget"),
+        (
+            ("--tarl-stress", "--tarl-stress-budget=3"),
+            "--tarl-stress-budget: it must be a whole number from 32 to 1000000, got 3.",
+        ),
         (
             ("--tarl-stress", "--tarl-stress-budget=soon"),
             "--tarl-stress-budget: it must be a number of episodes",
