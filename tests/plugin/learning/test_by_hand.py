@@ -23,6 +23,7 @@ from pytest_tarl.learning.judgements import judgements, rows, stacked, together,
 from pytest_tarl.learning.localize import culprits, prior
 from pytest_tarl.learning.marginal import apart, groups, left_out, lent, projected
 from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.residual_sums import Evidence, slabs
 from pytest_tarl.learning.residuals import beyond
 from pytest_tarl.learning.reward_parts import lost, means
@@ -386,6 +387,21 @@ def test_cells_with_a_lost_part_are_named() -> None:
     assert lost(one, one, 0.05, np.random.default_rng(0)) == {"a": (), "b": ()}
     bare = replace(one, part_names=())
     assert lost(bare, bare, 0.05, np.random.default_rng(0)) == {}
+
+
+@pytest.mark.parametrize(("excess", "named"), [(7.5, ()), (9.0, ((0,),))])
+def test_a_part_that_is_lower_by_no_more_than_rounding_can_cause_is_not_named(
+    excess: float, named: tuple[Cell, ...]
+) -> None:
+    """A sum may be off by four rounding errors, and the worlds differ by twice their deviation from the mean."""
+
+    def world_of(part: float) -> Sample:
+        one = replace(episodes([(0,)]), part_names=("b",))
+        one = replace(one, chain=replace(one.chain, parts=np.array([[part]])))
+        return merge([replace(one, seeds=(n,)) for n in range(8)])
+
+    found = lost(world_of(-1.0), world_of(-1.0 - excess * ROUNDING), 0.05, np.random.default_rng(0))
+    assert found == {"b": named}
 
 
 def test_a_loss_is_named_only_below_the_level_and_if_it_is_material(monkeypatch: pytest.MonkeyPatch) -> None:

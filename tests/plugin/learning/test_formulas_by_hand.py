@@ -10,7 +10,9 @@ import pytest
 from pytest_tarl.learning.bounds import STAKE, bet_low
 from pytest_tarl.learning.packing import UNIT, _before, _unpacked_in_turn, _visited
 from pytest_tarl.learning.permutation import _smallest
+from pytest_tarl.learning.shifts import _drawn
 from pytest_tarl.learning.tables import Edges, Visits
+from pytest_tarl.seeds import generator
 
 
 def wealth(values: list[float], m: float, risk: float, anytime: bool) -> float:
@@ -48,6 +50,13 @@ def test_smallest_numbers_of_each_row_are_picked_despite_ties() -> None:
     assert picked[0].tolist() == [0.0, 1.0, 0.0, 1.0]
     assert picked[1, 2] == 1.0
     assert picked[3].tolist() == [0.0, 1.0, 1.0, 0.0]
+
+
+def test_a_shuffle_consists_of_the_rows_with_the_smallest_numbers() -> None:
+    """Each set of rows is then equally likely."""
+    draws = generator(0, "shifts/30/10").random((50, 30))
+    wanted = np.sort(np.argsort(draws, axis=1)[:, :10], axis=1)
+    assert np.sort(_drawn(30, 10, 50), axis=1).tolist() == wanted.tolist()
 
 
 def test_previous_row_has_the_same_cell_and_episode() -> None:

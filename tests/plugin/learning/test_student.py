@@ -30,6 +30,16 @@ def test_quantiles_of_students_distribution_agree_with_published_tables(
     assert student_quantile(probability, degrees) == pytest.approx(expected, rel=2e-3)
 
 
+@pytest.mark.parametrize(
+    ("probability", "degrees", "expected"),
+    [(0.75, 20, 0.6869545), (0.975, 20, 2.0859634), (0.975, 30, 2.0422725), (0.95, 60, 1.6706489)],
+)
+def test_the_expansion_for_many_degrees_is_exact_to_five_digits(
+    probability: float, degrees: float, expected: float
+) -> None:
+    assert student_quantile(probability, degrees) == pytest.approx(expected, rel=1e-5)
+
+
 def test_the_interval_has_the_stated_coverage() -> None:
     covered = 0
     for seed in range(400):
