@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("pyarrow")
 
-from pytest_tarl.fleet import partitions
+from pytest_tarl.fleet import ingest, partitions
 from pytest_tarl.fleet.mission_rows import Row, _cells, _statements
 from pytest_tarl.fleet.question import Answer
 from pytest_tarl.learning.tables import END, START, Chain, Edges, ListSample, Sample, Visits
@@ -70,6 +70,25 @@ def test_missions_are_scored_in_portions_that_fit_into_memory(
     assert [cell for cells, _ in scored for cell in cells] == [0, 1, 0, 1, 0, 1, 0]
     assert found.bins[:, 0].tolist() == [int(1.5 * n) for n in range(7)]
     assert found.new == ()
+
+
+def test_new_missions_are_written_once_enough_of_them_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[list[int]] = []
+
+    def write(self: Any) -> None:
+        written.append([row.mission for day in sorted(self.rows) for row in self.rows[day]])
+        self.rows.clear()
+        self.waiting = 0
+
+    nothing: Any = None
+    writer = ingest._Writer(nothing, "1", nothing, nothing, b"")
+    monkeypatch.setattr(ingest, "TOGETHER", 3)
+    monkeypatch.setattr(ingest._Writer, "write", write)
+    monkeypatch.setattr(ingest._Writer, "holds", lambda *_: False)
+    monkeypatch.setattr(ingest._Writer, "_held", lambda self, day: self.known.setdefault(day, {}))
+    some: Any = [SimpleNamespace(date=f"day {n % 2}", mission=n, robot="r1") for n in range(6)]
+    assert [writer.add(some[:2]), writer.add([*some[:2], some[2]]), writer.add(some)] == [2, 1, 3]
+    assert written == [[0, 2, 1], [4, 3, 5]]
 
 
 def test_columns_that_have_the_wanted_type_are_not_copied() -> None:

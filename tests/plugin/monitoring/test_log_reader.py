@@ -288,6 +288,16 @@ def test_a_truncated_log_is_reported_and_counted_once(tmp_path: Path) -> None:
     assert reading.problems == []
 
 
+def test_a_problem_is_forgotten_once_another_file_is_in_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "m.log"
+    path.write_bytes(b"another format")
+    reading = Reading(path)
+    reading.read()
+    assert "is not a log of `tarl observe`" in reading.problems[0]
+    path.write_bytes(b"")  # a new log, still empty
+    assert (reading.read(), reading.problems) == (0, [])
+
+
 def test_a_replaced_log_is_read_from_the_beginning(tmp_path: Path) -> None:
     some = walks(5, 2)
     path = log(tmp_path / "m.log", some[:3])
