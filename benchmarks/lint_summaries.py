@@ -25,11 +25,11 @@ from dataclasses import dataclass, field
 from unittest import mock
 
 from tarl_lint.cli import main as lint
-from tarl_lint.interpret import replay
+from tarl_lint.interpret import call_replay
+from tarl_lint.interpret.call_replay import Mode, Run
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
-from tarl_lint.interpret.replay import Mode, Run
 from tarl_lint.memory.frames import Frame, Origin
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Key, Obj, Value
@@ -163,7 +163,7 @@ class Meter:
         self.contexts.clear()
 
 
-EXECUTED = replay._executed
+EXECUTED = call_replay._executed
 LINK = Linker.link
 
 
@@ -171,7 +171,7 @@ def measure(tree: str) -> Meter:
     """Lint a tree and return what was measured."""
     meter = Meter()
     with (
-        mock.patch.object(replay, "_executed", meter.executed),
+        mock.patch.object(call_replay, "_executed", meter.executed),
         mock.patch.object(Linker, "link", lambda machine: meter.link(machine)),
         contextlib.redirect_stdout(io.TextIOWrapper(io.BytesIO())),
     ):

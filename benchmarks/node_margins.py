@@ -27,7 +27,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa
 from pytest_tarl.stressing.findings import Curve, Stress  # noqa: E402
 from pytest_tarl.stressing.guarantee import Guarantee  # noqa: E402
 from pytest_tarl.stressing.rays import rays  # noqa: E402
-from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
+from pytest_tarl.stressing.stress_run import along_rays, near_ends  # noqa: E402
 
 BUDGET, SEED = 600, 1
 

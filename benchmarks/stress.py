@@ -35,7 +35,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa
 from pytest_tarl.stressing.findings import Curve  # noqa: E402
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed, outcome  # noqa: E402
 from pytest_tarl.stressing.rays import rays  # noqa: E402
-from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
+from pytest_tarl.stressing.stress_run import along_rays, near_ends  # noqa: E402
 
 GRID, EPISODES = 41, 40  # number of values, and number of episodes at each of them
 RECORDED = 100

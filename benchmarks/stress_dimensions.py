@@ -71,7 +71,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator  # noqa
 from pytest_tarl.stressing.findings import Curve, confirmed, farther  # noqa: E402
 from pytest_tarl.stressing.guarantee import Guarantee, guaranteed, outcome  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
-from pytest_tarl.stressing.search import divided, explore  # noqa: E402
+from pytest_tarl.stressing.stress_run import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
 MACHINES = {

@@ -31,7 +31,7 @@ from pytest_tarl.options import Options  # noqa: E402
 from pytest_tarl.recording import mean_flows, run_episodes, sarsa_tables  # noqa: E402
 from pytest_tarl.seeds import episode_seeds  # noqa: E402
 from pytest_tarl.stressing.margins import Margin, margins  # noqa: E402
-from pytest_tarl.stressing.search import Request, stress  # noqa: E402
+from pytest_tarl.stressing.stress_run import Request, stress  # noqa: E402
 
 SEED = 1
 BUDGET = round(SHARE * GRID * EPISODES)

@@ -31,7 +31,7 @@ from pytest_tarl.stressing.guarantee import Outcome, outcome
 from pytest_tarl.stressing.margin_changes import Row, compared
 from pytest_tarl.stressing.margins import Margin, margins
 from pytest_tarl.stressing.regions import Region, outwards, regions
-from pytest_tarl.stressing.search import Request, along, stress
+from pytest_tarl.stressing.stress_run import Request, along, stress
 from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 

@@ -35,8 +35,8 @@ from pytest_tarl.report import guarantee_words
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
 from pytest_tarl.stressing.delivering import deliver, deliver_repairs
-from pytest_tarl.stressing.search import Request
-from pytest_tarl.stressing.statements import source
+from pytest_tarl.stressing.failing_statements import source
+from pytest_tarl.stressing.stress_run import Request
 from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis
 from tarl_lint.files import write_atomically

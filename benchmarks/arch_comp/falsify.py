@@ -45,8 +45,8 @@ from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import explore
 from pytest_tarl.stressing.spreading import spread
+from pytest_tarl.stressing.stress_run import explore
 
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the ranges
 _NONE = np.zeros(0, np.int32)

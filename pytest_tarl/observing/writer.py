@@ -114,7 +114,7 @@ class Writer:
 def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
     """Return the record of some steps.
 
-    The order of the fields must not change, because the fast path of the watch relies on it (monitoring/blocks.py).
+    The order of the fields must not change, because the fast path of the watch relies on it (monitoring/log_blocks.py).
     """
     return {
         "kind": "steps",

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Protocol
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.holding import held
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
+from pytest_tarl.searching.partial_gains import held
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.refining import ALMOST, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Trials

@@ -6,7 +6,7 @@ from math import inf
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
-from pytest_tarl.searching.nearest import nearest
+from pytest_tarl.searching.closest_factor import nearest
 from pytest_tarl.searching.search import Candidate, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 

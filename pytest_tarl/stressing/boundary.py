@@ -6,9 +6,9 @@ the place on the ray, 0 at the nominal value and 1 at the end.
 
 from __future__ import annotations
 
-from pytest_tarl.stressing.candidates import Model
 from pytest_tarl.stressing.evaluating import FRESH, RAYS, Evaluator
 from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.fresh_values import Model
 from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary

@@ -12,8 +12,8 @@ from pytest_tarl.stressing import json_result, kept, margins, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
 from pytest_tarl.stressing.map_figure import map_figure
-from pytest_tarl.stressing.search import Request, stress
 from pytest_tarl.stressing.sobol_indices import affordable
+from pytest_tarl.stressing.stress_run import Request, stress
 from tarl_lint.files import write_atomically
 
 

@@ -9,7 +9,7 @@ from statistics import fmean
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evaluating import Evaluator
-from pytest_tarl.stressing.noise import (
+from pytest_tarl.stressing.loss_noise import (
     cut_off,
     nominal_variance,
     standard_error,

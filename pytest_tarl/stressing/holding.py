@@ -11,9 +11,9 @@ from __future__ import annotations
 from bisect import bisect_left
 
 from pytest_tarl.learning.bounds import episodes_for_quantile, rate
-from pytest_tarl.stressing.candidates import Model
 from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.findings import NEAR_RISK, Curve
+from pytest_tarl.stressing.fresh_values import Model
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 

@@ -25,8 +25,8 @@ from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.fitting import fitted
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import most_passed
+from pytest_tarl.stressing.loss_noise import cut_off, pairing_wastes
 from pytest_tarl.stressing.mapping import margin_map
-from pytest_tarl.stressing.noise import cut_off, pairing_wastes
 from pytest_tarl.stressing.prediction import Prediction, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from tarl_lint.flows.apart import named_first, named_sinks_first, sinks_told_apart, told_apart
 from tarl_lint.flows.choices import NOTHING_MADE, Choices
 from tarl_lint.flows.ends import Ends
-from tarl_lint.flows.nearest import Nearest
-from tarl_lint.flows.parts import Part, Parts
+from tarl_lint.flows.node_statements import Statements
 from tarl_lint.flows.shortest_path import ShortestPaths
 from tarl_lint.flows.statement_text import Texts
-from tarl_lint.flows.statements import Statements
+from tarl_lint.flows.subset_results import Nearest
 from tarl_lint.flows.taint_list import TaintLists
+from tarl_lint.flows.taint_list_parts import Part, Parts
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.model import Flow, Kind, Source, Step
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass
 
 from tarl_lint.flows.context_steps import Surroundings
-from tarl_lint.flows.parts import Part
+from tarl_lint.flows.node_statements import Statements
 from tarl_lint.flows.statement_text import Texts, Written
-from tarl_lint.flows.statements import Statements
+from tarl_lint.flows.taint_list_parts import Part
 from tarl_lint.flows.topological_order import in_order
 from tarl_lint.model import Dependence, Role, Span, Step
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord

@@ -10,7 +10,7 @@ from typing import Final
 from tarl_lint.interpret.budget import MAX_ALIKE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, instances, recency, updates
+from tarl_lint.memory import heap, library_instances, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import UNKNOWN, Obj, Value, join_all, pointer
 from tarl_lint.trees import last_name
@@ -29,7 +29,7 @@ def handed(ctx: Interpreter, frame: Frame, name: str) -> Value:
     module = ctx.module_objects[frame.program.name]
     classes = _classes(ctx, module, annotation)
     ctx.wanted.update(classes)
-    given = [_some(instances.of_class(ctx, cls)) for cls in classes]
+    given = [_some(library_instances.of_class(ctx, cls)) for cls in classes]
     several = isinstance(annotation, ast.Subscript) and last_name(annotation.value) in SEQUENCES
     value = join_all(one for one in given if one.pts)
     if not value.pts:

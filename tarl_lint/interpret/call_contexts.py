@@ -6,18 +6,18 @@ from collections.abc import Sequence
 
 from tarl_lint.interpret import (
     annotated,
+    call_replay,
     context_selection,
     generators,
     literals,
     nullness,
-    replay,
     shared_contexts,
 )
 from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_LIMIT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import generations, heap, instances, joins, recency, updates
+from tarl_lint.memory import generations, heap, joins, library_instances, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame, Origin
 from tarl_lint.memory.heap import item_field
@@ -100,7 +100,7 @@ def _invoke(
         and caller.statement is not None
     ):
         parts = ctx.ops.origins(ctx, caller, call, passed)
-    run = replay.run(ctx, frame, passed, parts, lambda: _execute(ctx, frame, closure, passed, parts))
+    run = call_replay.run(ctx, frame, passed, parts, lambda: _execute(ctx, frame, closure, passed, parts))
     result = shared_contexts.leave(ctx, frame, run.result) if frame.shared else run.result
     nullness.note_result(ctx, call, run.returned, frame)
     if ctx.thorough:
@@ -124,7 +124,7 @@ def _invoke(
 
 
 def _generator(
-    ctx: Interpreter, frame: Frame, run: replay.Run, caller: Frame, call: ir.Call, result: Value
+    ctx: Interpreter, frame: Frame, run: call_replay.Run, caller: Frame, call: ir.Call, result: Value
 ) -> Value:
     """Return the generator that a call makes: a sequence of the values that it yields.
 
@@ -348,7 +348,7 @@ def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> O
     generations.note(ctx, obj, site, frame)
     recency.renew(ctx, obj, frame)
     if ctx.looked_up:
-        instances.note(ctx, obj, cls)
+        library_instances.note(ctx, obj, cls)
     return obj
 
 

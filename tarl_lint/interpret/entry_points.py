@@ -13,7 +13,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.values import ClassInfo, Obj, lineage
-from tarl_lint.models import parts
+from tarl_lint.models import states_and_behaviours
 from tarl_lint.models.ros import subscriptions
 
 
@@ -178,7 +178,7 @@ def _called_by_others(ctx: Interpreter, obj: Obj) -> bool:
 def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, external: Set[str]) -> None:
     state = closure.name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
     given = [userdata.userdata(ctx, obj)] if state else []
-    guards, answer = parts.run_by_others(ctx, obj, closure, external)
+    guards, answer = states_and_behaviours.run_by_others(ctx, obj, closure, external)
     method = recency.intern(ctx, "bound", (closure.key, obj), closure.name)
     method.info = (closure, obj, owner)
     program = closure.info[2].path if isinstance(closure.info, tuple) else ""

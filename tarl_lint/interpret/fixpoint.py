@@ -22,7 +22,7 @@ from tarl_lint.memory.shared import Root
 from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
-from tarl_lint.models import parts
+from tarl_lint.models import states_and_behaviours
 from tarl_lint.models.ros import registered_roots
 from tarl_lint.prefilter.by_words import endpoint_words
 from tarl_lint.read.source import Module
@@ -85,7 +85,7 @@ class Linker(Interpreter):
             self._settle()
             entry_points.start_hooks(self)
             self._settle()
-            if parts.connect(self):
+            if states_and_behaviours.connect(self):
                 self._settle()
             if len(self.roots) == before:
                 break
@@ -94,7 +94,7 @@ class Linker(Interpreter):
             self.pending.update(self.waiting)
             self._settle()
         # a new condition may add outcomes; repeat until no part gets a new outcome
-        while parts.connect(self):
+        while states_and_behaviours.connect(self):
             self._settle()
         carry_nodes.settle(self.graph)
         registered_roots.connect(self)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint import catalog
 from tarl_lint.interpret import (
-    attempts,
     branches,
     calls,
     definitions,
@@ -18,6 +17,7 @@ from tarl_lint.interpret import (
     nullness,
     operators,
     tags,
+    try_statements,
 )
 from tarl_lint.interpret.budget import READS_PER_STATEMENT
 from tarl_lint.interpret.interpreter import Interpreter
@@ -198,7 +198,7 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
             publications.end(
                 ctx, Invocation("outcome", BOTTOM, ([], {}), frame, _answer(s)), value, frame.answer
             )
-    attempts.returned(ctx, value, frame)
+    try_statements.returned(ctx, value, frame)
     return False
 
 
@@ -218,7 +218,7 @@ def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
 
 
 def _jump(ctx: Interpreter, s: ir.Jump, frame: Frame) -> bool:
-    attempts.jumped(ctx, s.kind, frame)
+    try_statements.jumped(ctx, s.kind, frame)
     return False
 
 
@@ -262,7 +262,7 @@ EXECUTE: Mapping[type, Callable[..., bool]] = {
     ir.Evaluate: _expression,
     ir.If: branches.if_statement,
     ir.Loop: branches.loop,
-    ir.Try: attempts.try_statement,
+    ir.Try: try_statements.try_statement,
     ir.With: branches.with_statement,
     ir.Return: _returned,
     ir.Raise: _raised,

@@ -10,7 +10,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.run_order import Group
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import UNKNOWN, ClassInfo, Obj, Value, inherited_from, pointer
-from tarl_lint.models import blackboards, containers, parts, sizes
+from tarl_lint.models import blackboards, containers, sizes, states_and_behaviours
 
 SUCCESS, FAILURE, RUNNING = "SUCCESS", "FAILURE", "RUNNING"
 STATUSES: Final = frozenset([SUCCESS, FAILURE, RUNNING])
@@ -50,7 +50,7 @@ def composite(ctx: Interpreter, it: Invocation) -> Value:
     """Return a composite with the children among its arguments."""
     made = _made(ctx, it)
     for obj in made.objects:
-        group = parts.group_of(ctx, obj, _new_group(it.name.rpartition(".")[2]))
+        group = states_and_behaviours.group_of(ctx, obj, _new_group(it.name.rpartition(".")[2]))
         for value in (*it.arguments[0], *it.arguments[1].values()):
             for child in _listed(ctx, value):
                 _add(group, child)
@@ -61,7 +61,7 @@ def decorator(ctx: Interpreter, it: Invocation) -> Value:
     """Return a decorator with its child."""
     made = _made(ctx, it)
     for obj in made.objects:
-        group = parts.group_of(ctx, obj, _new_group(it.name.rpartition(".")[2]))
+        group = states_and_behaviours.group_of(ctx, obj, _new_group(it.name.rpartition(".")[2]))
         for value in (*it.arguments[0], *it.arguments[1].values()):
             for child in value.objects:
                 _add(group, child)
@@ -101,7 +101,7 @@ def adds(ctx: Interpreter, target: Obj, name: str) -> bool:
 
 def add(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     """Add children to a composite, or to an instance of a class that inherits from a composite."""
-    group = parts.group_of(ctx, target, _new_group(_kind(target) or ""))
+    group = states_and_behaviours.group_of(ctx, target, _new_group(_kind(target) or ""))
     for value in (*it.arguments[0][:1], *it.arguments[1].values()):
         for child in _listed(ctx, value) if it.name == "add_children" else value.objects:
             if it.name == "prepend_child":
@@ -127,7 +127,7 @@ def inherit(ctx: Interpreter, target: Obj, it: Invocation) -> None:
     """Note the children that an instance passes to the constructor of its base class, if this is a composite."""
     kind = _kind(target)
     if kind is not None:
-        group = parts.group_of(ctx, target, _new_group(kind))
+        group = states_and_behaviours.group_of(ctx, target, _new_group(kind))
         for value in (*it.arguments[0], *it.arguments[1].values()):
             for child in (*_listed(ctx, value), *(value.objects if kind in RENAMES else ())):
                 _add(group, child)
@@ -139,7 +139,7 @@ def constant(ctx: Interpreter, it: Invocation) -> Value:
     node = ctx.node(it.frame, ("status", it.call.slot), "condition")
     for obj in made.objects:
         status = CONSTANT[it.name.rpartition(".")[2]]
-        parts.part_of(ctx, obj, it.frame).answers[node] = frozenset([status])
+        states_and_behaviours.part_of(ctx, obj, it.frame).answers[node] = frozenset([status])
     return made
 
 
@@ -162,7 +162,7 @@ def check(ctx: Interpreter, it: Invocation) -> Value:
         for name in names:
             ctx.graph.flow(ctx.use(blackboards.value_of(ctx, client, name)), node)
     for obj in made.objects:
-        part = parts.part_of(ctx, obj, it.frame)
+        part = states_and_behaviours.part_of(ctx, obj, it.frame)
         ctx.graph.depend(node, [part.runs])
         part.answers[node] = None
     return made

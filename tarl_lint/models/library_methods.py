@@ -10,7 +10,7 @@ from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap, instances, message_types, updates
+from tarl_lint.memory import heap, library_instances, message_types, updates
 from tarl_lint.memory.blackboards import CLIENT
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import (
@@ -179,7 +179,7 @@ def _unknown_method(
         return text
     if (drawing := drawings.drawn_into(ctx, base, arguments, frame, call)) is not None:
         return drawing
-    if (found := instances.looked_up(ctx, name, (*arguments[0], *arguments[1].values()))).pts:
+    if (found := library_instances.looked_up(ctx, name, (*arguments[0], *arguments[1].values()))).pts:
         return found
     if name == "join" and not base.pts:
         arguments = strings.keys_joined(ctx, arguments, frame, call)

@@ -8,7 +8,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.values import Value, pointer
-from tarl_lint.models import parts
+from tarl_lint.models import states_and_behaviours
 from tarl_lint.models.ros import subscriptions
 from tarl_lint.models.smach import LATER
 
@@ -19,7 +19,7 @@ ENDING: Final = frozenset(["cb", "cond_cb", "result_cb", "response_cb"])
 def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
     """Create a state from functions that get the shared userdata. For some, the result is the state's outcome."""
     state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
-    part = parts.part_of(ctx, state, it.frame)
+    part = states_and_behaviours.part_of(ctx, state, it.frame)
     plain, named = it.arguments
     given = [*(("cb" if n == 0 else "", v) for n, v in enumerate(plain)), *named.items()]
     for keyword, value in given:
@@ -42,7 +42,7 @@ def monitor(ctx: Interpreter, it: Invocation) -> Value:
     callback = it.argument(it.fact.callback)
     record = subscriptions.source(ctx, it, callback)
     state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
-    part = parts.part_of(ctx, state, it.frame)
+    part = states_and_behaviours.part_of(ctx, state, it.frame)
     for target in callback.objects:
         if target.kind in LATER:
             values = [userdata.userdata(ctx, state), pointer(subscriptions.message(ctx, record, target))]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.flows.reachability import Tracer
-from tarl_lint.interpret import replay
+from tarl_lint.interpret import call_replay
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory import recency, updates
 from tarl_lint.memory.reads import Reads
@@ -175,7 +175,7 @@ def test_absorbing_a_layer_equals_storing_its_values(store, obj):
 
 def test_calls_with_unchanged_reads_run_once(monkeypatch):
     replayed = linked(HELPERS)
-    monkeypatch.setattr(replay, "_same", lambda *_: False)
+    monkeypatch.setattr(call_replay, "_same", lambda *_: False)
     executed = linked(HELPERS)
     assert flows(replayed) == flows(executed) != ()
     assert replayed.total < 0.85 * executed.total
@@ -190,7 +190,7 @@ def test_replay_equals_execution_with_fewer_loop_passes():
 
 
 def test_a_replay_that_differs_is_reported(monkeypatch):
-    monkeypatch.setattr(replay, "unchanged", lambda *_: True)
+    monkeypatch.setattr(call_replay, "unchanged", lambda *_: True)
     with pytest.raises(AssertionError, match="new edges"):
         linked(HELPERS, checking=True)
 

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tarl_lint.flows.choices import Choices, Made
-from tarl_lint.flows.parts import Part, Parts
+from tarl_lint.flows.node_statements import Statements
 from tarl_lint.flows.reachability import _reversed
-from tarl_lint.flows.statements import Statements
+from tarl_lint.flows.taint_list_parts import Part, Parts
 from tarl_lint.memory.value_flow_graph import MERGED
 
 COUNT = 9

@@ -11,11 +11,11 @@ from tarl_lint.errors import ConfigError
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.call_chains import calls
 from tarl_lint.flows.choices import Choices, made_alongside
-from tarl_lint.flows.parts import Part, Parts
+from tarl_lint.flows.node_statements import Keys, Statements
 from tarl_lint.flows.reachability import Reach, Tracer, _reversed, closure, ending_in_publish_call
 from tarl_lint.flows.statement_text import Text
-from tarl_lint.flows.statements import Keys, Statements
 from tarl_lint.flows.taint_list import new_step
+from tarl_lint.flows.taint_list_parts import Part, Parts
 from tarl_lint.model import Span
 from tarl_lint.options import _sentence
 from tarl_lint.settings.schema import Wrapper

@@ -12,7 +12,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import blackboards, recency, updates
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, inherited_from, join_all, pointer
-from tarl_lint.models import containers, parts
+from tarl_lint.models import containers, states_and_behaviours
 from tarl_lint.models.blackboards import any_client, holder_of, value_of
 from tarl_lint.models.ros import subscriptions
 
@@ -26,7 +26,7 @@ HANDLER: Final = "py_trees_ros.subscribers.Handler"  # base class whose objects 
 def behaviour(ctx: Interpreter, it: Invocation) -> Value:
     """Return a behaviour that subscribes, and note how the behaviour uses the messages."""
     made = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
-    part = parts.part_of(ctx, made, it.frame)
+    part = states_and_behaviours.part_of(ctx, made, it.frame)
     arriving = subscriptions.receive(ctx, it)
     if it.fact.api == CHECKS:
         node = ctx.node(it.frame, ("status", it.call.slot), "condition")

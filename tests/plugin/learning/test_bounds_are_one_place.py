@@ -18,7 +18,7 @@ DIRECTIONS = {
 }  # turns numbers into directions by normal quantiles, without an interval
 NO_INTERVALS = {  # findings of the check that are no parts of an interval
     "searching/laws.py": ["1.28"],  # a ratio of powers, about 1.13 squared
-    "stressing/noise.py": ["the spread of a mean"],  # compares the precision of paired and unpaired tests
+    "stressing/loss_noise.py": ["the spread of a mean"],  # precision of paired and unpaired tests
 }
 QUANTILES = {
     "NormalDist",

@@ -16,9 +16,9 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.acting import CHANGES, SEEDS, Acting
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import rivals
+from pytest_tarl.searching.closest_factor import LEAST, MOST, STRONGER, WEAKER, nearest
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import COARSE, FINE, another_way, gentler
-from pytest_tarl.searching.nearest import LEAST, MOST, STRONGER, WEAKER, nearest
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.smaller import LEADING, OTHERS, STEPS, inside, milder, onward, smaller
 from pytest_tarl.searching.units import Unit

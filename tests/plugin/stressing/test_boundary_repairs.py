@@ -27,7 +27,7 @@ from pytest_tarl.stressing.guarantee import Outcome
 from pytest_tarl.stressing.margin_changes import Row
 from pytest_tarl.stressing.margins import Margin
 from pytest_tarl.stressing.regions import Region, outwards, regions
-from pytest_tarl.stressing.search import Request
+from pytest_tarl.stressing.stress_run import Request
 from pytest_tarl.stressing.words import repair_lines
 from tests.plugin.stressing.worlds import Simulated, World, space_of, stressed
 from tests.plugin.tank import RECORD, changed

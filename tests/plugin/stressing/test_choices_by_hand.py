@@ -37,8 +37,8 @@ from pytest_tarl.stressing.nearest import BOLD, GAIN, LARGEST, PREDICTED, SPREAD
 from pytest_tarl.stressing.prediction import NEAR, ROUNDS, Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.regions import outwards
-from pytest_tarl.stressing.search import _executed, along
 from pytest_tarl.stressing.spreading import ASIDE, CLOSEST, around, spread
+from pytest_tarl.stressing.stress_run import _executed, along
 from pytest_tarl.stressing.words import directions, lines
 from tests.plugin.stressing.test_words_by_hand import (
     DOWN,
@@ -527,10 +527,12 @@ def test_both_sides_of_a_range_are_printed_together() -> None:
 def test_interrupted_run_searches_no_statements(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from pytest_tarl.stressing import search
+    from pytest_tarl.stressing import stress_run
 
     monkeypatch.setattr(
-        search, "statements", lambda source, evaluator, curves, failures: [one.distance for one in failures]
+        stress_run,
+        "statements",
+        lambda source, evaluator, curves, failures: [one.distance for one in failures],
     )
     together: Any = SimpleNamespace(
         curves=[curve(STEEP, {0.5: -1.0}, confirmed=0.5)],
@@ -545,12 +547,12 @@ def test_interrupted_run_searches_no_statements(
 
 
 def test_one_ray_has_at_most_the_risk_of_a_far_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    from pytest_tarl.stressing import search
+    from pytest_tarl.stressing import stress_run
 
     asked: list[Any] = []
-    monkeypatch.setattr(search, "_evaluator", lambda request, space: "evaluator")
-    monkeypatch.setattr(search, "along_rays", lambda curves, evaluator, share: asked.append(share))
-    monkeypatch.setattr(search, "near_ends", lambda curves, evaluator: asked.append(len(curves)))
+    monkeypatch.setattr(stress_run, "_evaluator", lambda request, space: "evaluator")
+    monkeypatch.setattr(stress_run, "along_rays", lambda curves, evaluator, share: asked.append(share))
+    monkeypatch.setattr(stress_run, "near_ends", lambda curves, evaluator: asked.append(len(curves)))
     for alpha, share in ((0.01, 0.01), (0.5, 0.1 / 6)):
         request: Any = SimpleNamespace(
             designation=SimpleNamespace(drifts={"d": SimpleNamespace(value=SPACE)}),

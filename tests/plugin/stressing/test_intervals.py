@@ -18,7 +18,7 @@ from pytest_tarl.stressing.findings import CONFIDENCE, Curve
 from pytest_tarl.stressing.guarantee import LEAST, Guarantee, Outcome, enough_pass
 from pytest_tarl.stressing.holding import SHARES, holds, least
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import along_rays, near_ends
+from pytest_tarl.stressing.stress_run import along_rays, near_ends
 from tests.plugin.stressing.worlds import World, evaluator_of, space_of, stressed
 from tests.slow import SLOW
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from pytest_tarl.stressing import prediction, surrogates
-from pytest_tarl.stressing.candidates import CENTRES, SCALES, Model
 from pytest_tarl.stressing.combinations import Together, pairs
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.findings import (
     Curve,
 )
+from pytest_tarl.stressing.fresh_values import CENTRES, SCALES, Model
 from pytest_tarl.stressing.guarantee import (
     Evidence,
 )

@@ -11,7 +11,7 @@ import pytest
 
 from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
-from pytest_tarl.stressing import combinations, search
+from pytest_tarl.stressing import combinations, stress_run
 from pytest_tarl.stressing.chains import FIRST, NEXT, clear, part_of
 from pytest_tarl.stressing.combinations import SHARES, Chain, Combined, Together, _inside
 from pytest_tarl.stressing.coordinates import Coordinates
@@ -21,7 +21,7 @@ from pytest_tarl.stressing.mapping import CELLS, margin_map
 from pytest_tarl.stressing.nearest import Nearest, _without_trifles
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import divided, explore, variances
+from pytest_tarl.stressing.stress_run import divided, explore, variances
 from tests.plugin.stressing.test_words_by_hand import DOWN, FLAT, GIVEN, MUD, STEEP, curve, seen
 from tests.plugin.stressing.worlds import evaluator_of, space_of
 
@@ -61,13 +61,15 @@ def trail(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     found: list[Any] = []
     monkeypatch.setattr(Several, "trail", found)
     monkeypatch.setattr(Several, "fail", {})
-    monkeypatch.setattr(search, "Combined", Several)
+    monkeypatch.setattr(stress_run, "Combined", Several)
     monkeypatch.setattr(
-        search, "_nominal_fails", lambda evaluator, risk: found.append(("nominal", risk)) or False
+        stress_run, "_nominal_fails", lambda evaluator, risk: found.append(("nominal", risk)) or False
     )
-    monkeypatch.setattr(search, "along_rays", lambda curves, evaluator, share: found.append(("rays", share)))
     monkeypatch.setattr(
-        search, "near_ends", lambda curves, evaluator: found.append([one.ray.names[0] for one in curves])
+        stress_run, "along_rays", lambda curves, evaluator, share: found.append(("rays", share))
+    )
+    monkeypatch.setattr(
+        stress_run, "near_ends", lambda curves, evaluator: found.append([one.ray.names[0] for one in curves])
     )
     return found
 
@@ -101,7 +103,7 @@ def test_search_in_one_direction_follows_only_the_rays(
 
 
 def test_a_nominal_failure_ends_the_search_at_once(trail: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "_nominal_fails", lambda *_: True)
+    monkeypatch.setattr(stress_run, "_nominal_fails", lambda *_: True)
     assert explored() == "nominal"
     assert trail == ["made", "draw"]
 
@@ -122,7 +124,7 @@ def test_note_names_the_uncovered_results(trail: list[Any]) -> None:
 def test_interrupted_search_has_no_variances(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(search, "sobol", lambda _: "indices")
+    monkeypatch.setattr(stress_run, "sobol", lambda _: "indices")
     evaluator: Any = None
     assert [variances(evaluator, ended) for ended in ("", "budget", "interrupted", "nominal")] == [
         ("indices", ""),
@@ -137,9 +139,9 @@ def test_interrupted_search_has_no_variances(
 
         return run
 
-    monkeypatch.setattr(search, "sobol", failing(BudgetSpentError()))
+    monkeypatch.setattr(stress_run, "sobol", failing(BudgetSpentError()))
     assert variances(evaluator, "") == (None, "budget")
-    monkeypatch.setattr(search, "sobol", failing(KeyboardInterrupt()))
+    monkeypatch.setattr(stress_run, "sobol", failing(KeyboardInterrupt()))
     assert variances(evaluator, "") == (None, "interrupted")
 
 

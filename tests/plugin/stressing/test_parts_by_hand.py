@@ -16,6 +16,7 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import delivering, page
 from pytest_tarl.stressing.combinations import _apart, pairs
 from pytest_tarl.stressing.coordinates import Coordinates
+from pytest_tarl.stressing.failing_statements import chosen, only_in_failures, places_in
 from pytest_tarl.stressing.fields import relevant
 from pytest_tarl.stressing.findings import (
     APART,
@@ -34,9 +35,7 @@ from pytest_tarl.stressing.findings import (
 from pytest_tarl.stressing.generating import _number, _point
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee, hopeful
 from pytest_tarl.stressing.holding import least
-from pytest_tarl.stressing.mapping import importance, lost
-from pytest_tarl.stressing.margins import margins, text
-from pytest_tarl.stressing.noise import (
+from pytest_tarl.stressing.loss_noise import (
     HIGHEST,
     cut_off,
     nominal_variance,
@@ -44,10 +43,11 @@ from pytest_tarl.stressing.noise import (
     typical_variance,
     variance_near,
 )
+from pytest_tarl.stressing.mapping import importance, lost
+from pytest_tarl.stressing.margins import margins, text
 from pytest_tarl.stressing.prediction import _normal, _within
 from pytest_tarl.stressing.rays import Ray
 from pytest_tarl.stressing.regions import end, regions
-from pytest_tarl.stressing.statements import chosen, only_in_failures, places_in
 from pytest_tarl.stressing.surrogates import variance
 from pytest_tarl.stressing.words import (
     _sign,

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Choice, Span
 from pytest_tarl.stressing.boundary import _candidates, bisect
-from pytest_tarl.stressing.candidates import Model
 from pytest_tarl.stressing.combinations import Together, _inside, _share
 from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.findings import Curve, contains
+from pytest_tarl.stressing.fresh_values import Model
 from pytest_tarl.stressing.guarantee import (
     Evidence,
     Outcome,
@@ -40,10 +40,10 @@ from pytest_tarl.stressing.margin_changes import words as boundary_words
 from pytest_tarl.stressing.margins import Margin, Margins
 from pytest_tarl.stressing.rays import distance, joined, rays
 from pytest_tarl.stressing.regions import outwards, regions
-from pytest_tarl.stressing.search import divided
 from pytest_tarl.stressing.shrinking import weighted
 from pytest_tarl.stressing.sobol_indices import _number, affordable
 from pytest_tarl.stressing.spreading import _inverse, _primes
+from pytest_tarl.stressing.stress_run import divided
 from tests.plugin.stressing.test_words_by_hand import (
     DOWN,
     FLAT,

@@ -23,7 +23,7 @@ from pytest_tarl.stressing.boundary import confirm
 from pytest_tarl.stressing.findings import Curve, failure
 from pytest_tarl.stressing.guarantee import Evidence
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import along_rays
+from pytest_tarl.stressing.stress_run import along_rays
 from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
 from tests.plugin.tank import RECORD, changed
 from tests.slow import slow

@@ -19,7 +19,7 @@ from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.findings import Curve, Stress
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import explore, variances
+from pytest_tarl.stressing.stress_run import explore, variances
 
 World = Callable[[Point, np.random.Generator], tuple[bool, float]]  # → passed, total reward
 

@@ -18,10 +18,7 @@ from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import json_result, page, words
 from pytest_tarl.stressing.evaluating import RAYS
-from pytest_tarl.stressing.findings import Curve, Executed, Statements, confirmed
-from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import along_rays
-from pytest_tarl.stressing.statements import (
+from pytest_tarl.stressing.failing_statements import (
     FAILING,
     OTHERS,
     Source,
@@ -31,6 +28,9 @@ from pytest_tarl.stressing.statements import (
     source,
     statements,
 )
+from pytest_tarl.stressing.findings import Curve, Executed, Statements, confirmed
+from pytest_tarl.stressing.rays import rays
+from pytest_tarl.stressing.stress_run import along_rays
 from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
 from tests.plugin.tank import RECORD, changed
 

@@ -21,7 +21,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError
 from pytest_tarl.stressing.findings import Curve, failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, examined, refuted
 from pytest_tarl.stressing.rays import distance, rays
-from pytest_tarl.stressing.search import explore
+from pytest_tarl.stressing.stress_run import explore
 from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
 from tests.slow import slow
 

@@ -15,12 +15,12 @@ from pytest_tarl.spaces import Space
 from pytest_tarl.stressing.boundary import COARSE, bisect, confirm, sweep
 from pytest_tarl.stressing.combinations import Combined, Together
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progress
+from pytest_tarl.stressing.failing_statements import Source, statements
 from pytest_tarl.stressing.findings import FAR_RISK, Curve, Sobol, Statements, Stress, confirmed
 from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
 from pytest_tarl.stressing.holding import hold
 from pytest_tarl.stressing.rays import Ray, rays
 from pytest_tarl.stressing.sobol_indices import sobol
-from pytest_tarl.stressing.statements import Source, statements
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tarl_lint.flows.nearest import MAX_KEPT, Nearest
+from tarl_lint.flows.subset_results import MAX_KEPT, Nearest
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tarl_lint.memory.instances import looked_up, note
+from tarl_lint.memory.library_instances import looked_up, note
 from tarl_lint.memory.values import BOTTOM, Obj, Value, pointer
 from tests.lint.memory.test_values import instance, made_class
 

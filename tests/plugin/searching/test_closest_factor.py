@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.searching.nearest import nearest
+from pytest_tarl.searching.closest_factor import nearest
 
 
 @pytest.mark.parametrize("factor", [0.4, 0.82, 1.22, 2.2, 5.0])

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from tarl_lint.flows.choices import Choices
+from tarl_lint.flows.node_statements import Statements
 from tarl_lint.flows.precedence import Bits, Precedence
 from tarl_lint.flows.statement_text import Written
-from tarl_lint.flows.statements import Statements
 from tarl_lint.memory.frames import Frame
 
 Pairs = dict[tuple[int, int], None]  # (`id` of a statement, `id` of a statement that it precedes)

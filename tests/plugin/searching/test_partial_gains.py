@@ -9,7 +9,7 @@ from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
-from pytest_tarl.searching.holding import EPISODES, SEEDS, held
+from pytest_tarl.searching.partial_gains import EPISODES, SEEDS, held
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit

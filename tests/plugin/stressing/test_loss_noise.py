@@ -11,8 +11,7 @@ from pytest_tarl import Drift
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.findings import failure
 from pytest_tarl.stressing.guarantee import Guarantee, recorded_mean
-from pytest_tarl.stressing.map_figure import answer
-from pytest_tarl.stressing.noise import (
+from pytest_tarl.stressing.loss_noise import (
     HIGHEST,
     cut_off,
     nominal_variance,
@@ -21,6 +20,7 @@ from pytest_tarl.stressing.noise import (
     typical_variance,
     variance_near,
 )
+from pytest_tarl.stressing.map_figure import answer
 from tests.plugin.stressing.worlds import recorded, space_of, stressed
 
 SPACE = space_of(a=Drift.range(-0.8, 0.8, nominal=0.0), b=Drift.range(0.0, 3.0, nominal=0.0))
