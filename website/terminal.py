@@ -14,8 +14,8 @@ from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
+from website.page_commands import TUTORIAL, Ran, run
 from website.pages import ROOT
-from website.tutorial import TUTORIAL, Ran, run
 
 TARGET = ROOT / "docs" / "images" / "terminal.svg"
 SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # prefixes of the commands that are shown

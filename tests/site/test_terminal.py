@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree
 
+from website.page_commands import TUTORIAL, VARIES, blocks
 from website.terminal import SHOWN, TARGET
-from website.tutorial import TUTORIAL, VARIES, blocks
 
 TEXT = "{http://www.w3.org/2000/svg}text"
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from website.page_commands import TUTORIAL, blocks, renewed, run, same, shortened
 from website.pages import ROOT
-from website.tutorial import TUTORIAL, blocks, renewed, run, same, shortened
 
 PAGES = (TUTORIAL, *sorted(ROOT.glob("docs/howto/*.md")))
 SLOW = os.environ.get("TARL_SLOW") or os.environ.get(
