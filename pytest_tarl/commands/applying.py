@@ -1,4 +1,4 @@
-"""`tarl apply` and `tarl revert`: apply and undo patches, either in all files or in none."""
+"""`tarl apply` and `tarl revert`: patch all files or none."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.patching.patch_reader import Patch, read
 
 
 def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial: bool = False) -> list[str]:
-    """Apply patches and return the lines to print. Raise RefusedError and change nothing if a check fails."""
+    """Apply patches; return the output. Raise RefusedError if a check fails."""
     patches = [read(path) for path in paths]
     if not partial:
         whole(patches)
@@ -37,7 +37,7 @@ def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial
 
 
 def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
-    """Undo patches and return the lines to print. Raise RefusedError if a patch is not applied or was edited."""
+    """Undo patches; return the output. Raise RefusedError."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
     # skip the files that an interrupted `tarl apply` did not reach
@@ -62,13 +62,13 @@ def _together(patches: Sequence[Patch]) -> None:
 
 
 def _halfway(targets: Sequence[Target]) -> set[Path]:
-    """Return the files that an interrupted run of the same command has already changed."""
+    """Return the files that an interrupted run has changed."""
     done = {target.path for target in targets if target.done}
     return done if len(done) < len(targets) else set()
 
 
 def _changed(target: Target, force: bool) -> bytes:
-    """Return a file's content with all patches applied. Raise RefusedError if the result is not the tested text."""
+    """Return a file's patched content. Raise RefusedError if it was not tested."""
     if target.as_searched:
         for patch, file in target.parts:
             tested(target, patch, file, target.content)
@@ -99,7 +99,7 @@ def _changed(target: Target, force: bool) -> bytes:
 
 
 def _before_others(content: bytes, patch: Patch, file: FilePatch) -> bytes | None:
-    """Return the text on which the patch was tested, if `content` is that text with other patches applied."""
+    """Return the tested text below other patches, if `content` contains it."""
     others = sorted(path for path in patch.path.parent.glob("*.patch") if path.name != patch.name)
     for path in others:
         try:
@@ -172,13 +172,13 @@ def _again(patches: Sequence[Patch]) -> list[str]:
 
 
 def _move(patches: Sequence[Patch]) -> str:
-    """Return the shell prefix that changes to the folder in which the commands must run."""
+    """Return the shell prefix that changes the folder."""
     root = patches[0].root
     return f"cd {shlex.quote(shown(root))} && " if root is not None and root != Path.cwd() else ""
 
 
 def _recording(patches: Sequence[Patch], targets: Sequence[Target]) -> list[str]:
-    """Return advice for a permanent drift: record it as the new design, and commit the recording with the patch."""
+    """Return advice to record a permanent drift and commit the recording."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("record"))
     if not commands:
         return []

@@ -1,4 +1,4 @@
-"""Checks before a patch is applied: the result is the tested text and compiles, and no uncommitted change is lost."""
+"""Checks before a patch is applied."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.patching.patch_reader import Patch
 
 
 def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> None:
-    """Raise RefusedError if the patched text is not the tested one, whose blob id is in the patch's header."""
+    """Raise RefusedError if the patched text was not tested."""
     if file.exact(content) is None:
         raise RefusedError(
             f"{patch.name} does not produce the tested text of {target.shown}: the patch was edited or damaged. "
@@ -26,7 +26,7 @@ def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> Non
 
 
 def sealed(patch: Patch) -> None:
-    """Raise RefusedError if a patch has no digest, because without one, edits of the patch could not be detected."""
+    """Raise RefusedError if a patch has no digest."""
     if not patch.sealed:
         raise RefusedError(
             f"{patch.name} has no digest, so TARL cannot check it on a changed file: restore the text for which "
@@ -35,7 +35,7 @@ def sealed(patch: Patch) -> None:
 
 
 def clean(targets: Sequence[Target]) -> Iterator[str]:
-    """Raise RefusedError if a file has uncommitted changes. Yield notes on files that cannot be checked."""
+    """Raise RefusedError for uncommitted changes; yield notes on unchecked files."""
     for target in targets:
         if not any((folder / ".git").exists() for folder in target.path.parents):
             yield f"note:  {target.shown} is not in a git repository, so uncommitted changes cannot be detected"
@@ -51,7 +51,7 @@ def clean(targets: Sequence[Target]) -> Iterator[str]:
 
 
 def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
-    """Raise RefusedError if a recording has changed since the repair. Yield a note on each missing recording."""
+    """Raise RefusedError for a new recording; yield a note on each missing one."""
     for patch in patches:
         for told in patch.told("fixture"):
             digest, _, name = told.partition(" ")
@@ -67,7 +67,7 @@ def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
 
 
 def _content(path: Path, root: Path) -> bytes | None:
-    """Return the content of a path in a header, or None if it is not a readable file below a folder."""
+    """Return the content of a path in a header, or None."""
     try:
         return read_regular(path) if path.is_file() and path.resolve().is_relative_to(root) else None
     except (OSError, ValueError):  # the file is unreadable, or its name is invalid

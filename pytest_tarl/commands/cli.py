@@ -24,7 +24,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errno values tha
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command and return its exit code: 1 if it refuses or a check fails, 2 after a user error, otherwise 0."""
+    """Run a command; return 0, 1 for a failed check or 2 for a user error."""
     _prepare_streams()
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")
@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _prepare_streams() -> None:
-    """Open the null device for closed standard streams; escape characters that a stream cannot encode."""
+    """Repair closed standard streams and their encodings."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
@@ -103,7 +103,7 @@ def parser() -> Parser:
 
 
 def _nothing(_: str) -> str | None:
-    """Return None: the command needs no packages in addition to those of the linter."""
+    """Return None: the command needs no additional packages."""
     return None
 
 

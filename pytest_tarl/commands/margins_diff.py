@@ -1,4 +1,4 @@
-"""`tarl diff` for margins: show as text or Markdown whether a change makes a robot more fragile."""
+"""`tarl diff` for margins: show whether a robot became more fragile."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MARKS = {"more fragile": "❌ ", "more robust": "✅ ", "not comparable": "⚠�
 
 
 def guarantees_changed(before: Sequence[Margins], after: Sequence[Margins]) -> Iterator[str]:
-    """Yield a note for each test whose guarantee has changed, since its boundaries depend on the guarantee."""
+    """Yield a note for each test whose guarantee has changed."""
     old = {one.title: one for one in before}
     for one in after:
         was = old.get(one.title)
@@ -51,7 +51,7 @@ def table(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def plain(text: str) -> str:
-    """Return a string without the characters that end a table cell or a code span."""
+    """Return a string that is safe in a table cell."""
     return text.translate(_HARMLESS)
 
 

@@ -1,4 +1,4 @@
-"""Read margins from a file or a folder of files; REVISION:PATH reads them from a git revision."""
+"""Read margins from files, folders or git revisions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FOLDER = ".tarl/margins"
 
 
 def is_recording(place: str) -> bool:
-    """Return whether an argument of `tarl diff` names a recording; otherwise it names margins."""
+    """Return whether an argument of `tarl diff` names a recording."""
     return place.endswith(".npz")
 
 

@@ -1,4 +1,4 @@
-"""Parse the command line of `tarl`. On an error, print the usage of the command and a sentence."""
+"""Parse the command line of `tarl`; explain errors in one sentence."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Parser(argparse.ArgumentParser):
     passing: frozenset[str] = frozenset()
 
     def error(self, message: str) -> NoReturn:
-        """Print the usage (of `tarl` alone: the list of commands) and a sentence, and exit with 2."""
+        """Print the usage and a sentence, and exit with 2."""
         if message == NO_COMMAND:
             self.print_help(sys.stderr)
         else:
@@ -29,7 +29,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"\n{self.prog}: {sentence(message)} Run {self.prog} --help for more.\n")
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
-        """Parse the arguments; for an unknown one, print the usage of the command instead of the usage of `tarl`."""
+        """Parse the arguments; errors show the usage of the command."""
         given = sys.argv[1:] if args is None else list(args)
         # argparse fills `argv` as soon as it meets the first positional argument, and would refuse options after it
         end = given.index("--") if given[:1] and given[0] in self.passing and "--" in given else len(given)

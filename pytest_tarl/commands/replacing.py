@@ -1,4 +1,4 @@
-"""Replace the contents of several files, or of none. Neither follow links nor overwrite concurrent changes."""
+"""Replace several files or none, without following links."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CREATE: int = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NOFOLLOW | getattr(os, "O
 
 
 class MovedError(Exception):
-    """A file changed after it was checked: its content differs, or another file replaced it."""
+    """A file changed after it was checked."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(str(path))
@@ -28,7 +28,7 @@ class MovedError(Exception):
 
 @dataclass(frozen=True)
 class Change:
-    """A file inside `project` that changes from `before` to `after`; both paths are resolved."""
+    """A file in `project` that changes from `before` to `after`."""
 
     path: Path
     project: Path
@@ -38,19 +38,19 @@ class Change:
 
 @dataclass(frozen=True)
 class _Opened:
-    """A change whose folder is held open, so that replacing the folder has no effect."""
+    """A change whose folder is held open and cannot be replaced."""
 
     change: Change
     folder: int | None
 
     def name(self, suffix: str = "") -> str:
-        """Return the name of the file, or of a temporary file beside it, relative to the open folder."""
+        """Return the file's name, or that of a temporary file beside it."""
         name = f".{self.change.path.name}.{suffix}" if suffix else self.change.path.name
         return name if self.folder is not None else str(self.change.path.with_name(name))
 
 
 def replace_all(changes: Sequence[Change]) -> None:
-    """Make all changes or none; keep modes and owners. Raise MovedError, or OSError if a file cannot be written."""
+    """Make all changes or none. Raise MovedError or OSError."""
     with ExitStack() as stack:
         opened = [stack.enter_context(_held(change)) for change in changes]
         suffix = secrets.token_hex(4)
@@ -74,7 +74,7 @@ def replace_all(changes: Sequence[Change]) -> None:
 
 @contextmanager
 def _held(change: Change) -> Iterator[_Opened]:
-    """Open a file's folder, one path component at a time from the project; raise OSError at a symbolic link."""
+    """Open a file's folder. Raise OSError at a symbolic link."""
     if not RELATIVE:
         if change.path.resolve() != change.path:
             raise MovedError(change.path)
@@ -97,7 +97,7 @@ def _held(change: Change) -> Iterator[_Opened]:
 
 
 def _stage(one: _Opened, new: str, old: str) -> None:
-    """Write the new content beside the file, and hard-link the old one as a backup."""
+    """Write the new content beside the file, and keep the old one."""
     try:
         with os.fdopen(os.open(one.name(), _READ, dir_fd=one.folder), "rb") as file:
             status = os.fstat(file.fileno())

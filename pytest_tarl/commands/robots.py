@@ -1,4 +1,4 @@
-"""Commands for robots: `tarl observe` logs missions, and `tarl watch` tests them for changes as they arrive."""
+"""The commands `tarl observe` and `tarl watch`."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ BARS = 8  # maximum number of statements in a chart
 
 
 def markdown(folder: Path, since: str | None = None) -> str:
-    """Return the results in `folder` (`.tarl/results`) and the margins in the folder beside it, as Markdown.
+    """Return the results in `folder` and their margins as Markdown.
 
     With `since`, compare the margins with those at this git revision. Raise FixtureError if there are no results, or if
     a file cannot be read.
@@ -39,7 +39,7 @@ def markdown(folder: Path, since: str | None = None) -> str:
 
 
 def _margins(folder: Path, since: str | None) -> list[str]:
-    """Return the margins as a table; with a revision, compare them with the margins of that revision."""
+    """Return the margins as a table, perhaps compared with a revision."""
     now = margins_in(str(folder))
     before = [] if since is None else margins_in(f"{since}:{folder.as_posix()}")
     rows = compared(before, now)
@@ -114,7 +114,7 @@ def _repair(repair: Mapping[str, Any] | None) -> str:
 
 
 def _picture(document: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a Mermaid chart of the statements with the largest losses: designed (bars) and deployed utility (line)."""
+    """Yield a Mermaid chart of the statements with the largest losses."""
     worst = sorted(document["sites"], key=lambda site: float(site["difference"]))[:BARS]
     shown = sorted(worst, key=lambda site: (str(site["path"]), int(site["line"])))
     names = ", ".join(f'"{Path(str(site["path"])).name}:{site["line"]}"' for site in shown)
@@ -128,7 +128,7 @@ def _picture(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _plain(text: object) -> str:
-    """Return a string without the characters that end a table cell, a code span or a title."""
+    """Return a string without Markdown's special characters."""
     return str(text).translate(_HARMLESS)
 
 

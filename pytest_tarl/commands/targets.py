@@ -16,7 +16,7 @@ from pytest_tarl.patching.patched_files import located
 
 @dataclass(frozen=True)
 class Target:
-    """A file to be changed: its path, its content, and the changes of each patch."""
+    """A file to be changed, with the changes of each patch."""
 
     path: Path
     project: Path
@@ -26,7 +26,7 @@ class Target:
 
     @property
     def as_searched(self) -> bool:
-        """Return whether the file still has the text for which all of its patches were accepted."""
+        """Return whether the file has the text of its patches."""
         return all(identical(self.content, file.before) for _, file in self.parts)
 
     @property
@@ -36,7 +36,7 @@ class Target:
 
 
 def targets(patches: Sequence[Patch], directory: Path | None) -> list[Target]:
-    """Find the files of all patches. Raise RepairError for a missing file, RefusedError outside the project."""
+    """Find the files of all patches. Raise RepairError or RefusedError."""
     parts: dict[Path, list[tuple[Patch, FilePatch]]] = {}
     projects: dict[Path, Path] = {}
     for patch in patches:

@@ -1,4 +1,4 @@
-"""`tarl watch LOG… --fixture F`: test missions for changes as they arrive, report, and set the exit code."""
+"""`tarl watch`: test missions for changes as they arrive."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Teller:
         self._problems: tuple[str, ...] = ()
 
     def look(self) -> Status:
-        """Read new missions until none are left or an end condition holds; return the status."""
+        """Read new missions until an end condition holds; return the status."""
         for _ in self.watch.poll():
             if monotonic() - self._looked > TOLD:
                 self._tell(self.watch.status())
@@ -149,7 +149,7 @@ def _follow(teller: Teller) -> int:
 
 @contextmanager
 def _stopped() -> Iterator[Event]:
-    """Make Ctrl-C and SIGTERM end a watch only between two portions of a log."""
+    """Let Ctrl-C and SIGTERM end a watch only between portions of a log."""
     stopped = Event()
 
     def stop(_number: int, _frame: object) -> None:

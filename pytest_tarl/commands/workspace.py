@@ -1,4 +1,4 @@
-"""`tarl workspace`: list the packages of a workspace, their nodes and launch files, and files that cannot be read."""
+"""`tarl workspace`: list packages, nodes, launch files and unreadable files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def described(folder: Path) -> Examined:
 
 
 def table(found: Examined) -> Iterator[str]:
-    """Yield the lines of the table, then what launch files start from elsewhere, and what could not be read."""
+    """Yield the table, foreign nodes and unreadable files."""
     workspace = found.workspace
     rows = [HEADINGS, *map(_row, workspace.packages)]
     optional = HEADINGS.index("C++ nodes")

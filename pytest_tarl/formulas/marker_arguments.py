@@ -1,4 +1,4 @@
-"""Read and check the marker's arguments for formulas: signals, requirements, and rewards from robustness."""
+"""Read and check the marker's arguments for formulas."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal,
 
 
 def _observed(given: Any, said: Said, declared: Sequence[Sensor | Signal]) -> tuple[Signal, ...]:
-    """Return the signals that a formula names and the test observes, but that are not declared."""
+    """Return the observed but undeclared signals of a formula."""
     known = {one.name for one in declared}
     texts = " ".join(
         one for one in (*(given if isinstance(given, Sequence) else ()), *said.texts) if isinstance(one, str)

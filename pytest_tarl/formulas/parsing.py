@@ -1,4 +1,4 @@
-"""Parse and check the formulas of a marker or of `tarl.require`; report each mistake in one sentence."""
+"""Parse and check formulas, with one sentence per mistake."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EXAMPLE = 'such as "always (gap > 0.3)"'
 
 @dataclass(frozen=True)
 class Formula:
-    """A parsed formula: its text, the signals that it names, and its tree of rtamt nodes."""
+    """A parsed formula with its signals."""
 
     text: str
     signals: tuple[str, ...]

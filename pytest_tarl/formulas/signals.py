@@ -53,7 +53,7 @@ class Signal:
 
 
 def stored_signal(signal: Signal) -> Signal:
-    """Return the signal in a form that can be stored, with a function replaced by its name."""
+    """Return the signal in a form that can be stored."""
     if not callable(signal.field):
         return signal
     return replace(
@@ -62,7 +62,7 @@ def stored_signal(signal: Signal) -> Signal:
 
 
 class Timeline:
-    """The values of all signals over an episode; times are in virtual ns since it began."""
+    """The values of all signals over an episode, in virtual ns."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self._times: dict[str, list[int]] = {name: [] for name in names}
@@ -84,11 +84,11 @@ class Timeline:
             values.append(number)
 
     def missing(self, names: Iterable[str]) -> str | None:
-        """Return the first of the names for which no value was ever set, or None."""
+        """Return the first name without a value, or None."""
         return next((name for name in names if not self._times[name]), None)
 
     def samples(self, names: Iterable[str]) -> dict[str, Samples]:
-        """Return the signals as rtamt expects them; before a signal was first set, it has its first value."""
+        """Return the signals as rtamt expects them."""
         return {
             name: [[time if i else 0, value] for i, (time, value) in enumerate(self._columns(name))]
             for name in names

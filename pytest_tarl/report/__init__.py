@@ -1,1 +1,1 @@
-"""Report the result of a comparison to people (terminal, HTML page) and to other tools (JSON)."""
+"""Report a comparison on the terminal, in HTML and in JSON."""

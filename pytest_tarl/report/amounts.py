@@ -62,6 +62,6 @@ def running_mean(totals: Sequence[float]) -> list[float]:
 
 
 def deviations(effect: float) -> str:
-    """Format an effect size; above 100 standard deviations, return `over 100`, since larger numbers say no more."""
+    """Format an effect size of at most 100 standard deviations."""
     size = abs(effect)
     return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"

@@ -1,4 +1,4 @@
-"""The reward by drift size, for drifts with a range, as text and as a drawing for the page."""
+"""The reward by drift size, as text and as a drawing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WIDTH, HEIGHT = 640, 240  # size of the drawing without its margins (pixels)
 
 @dataclass(frozen=True)
 class Row:
-    """The mean reward in an interval of a range, before and after the repair; None if the interval has no episode."""
+    """The mean rewards in an interval of a range; None without episodes."""
 
     band: Band
     before: float | None
@@ -25,7 +25,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Plot:
-    """The drawing of one range: points in pixels for each world, and labelled ticks."""
+    """The drawing of a range, with points in pixels and labelled ticks."""
 
     part: str
     points: Mapping[str, tuple[tuple[float, float], ...]]

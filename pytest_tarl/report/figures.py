@@ -1,4 +1,4 @@
-"""The figures of the report page as plain data, in sensor units and rewards; a script in the page draws them."""
+"""The figures of the page as data for its script."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DIGITS = 5  # number of significant digits of numbers on the page
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The sensors that a figure shows: one along the axis, one as rows. The figure averages over all others."""
+    """The sensors along the axis and for the rows of a figure."""
 
     position: int
     split: int | None
@@ -37,7 +37,7 @@ class Plane:
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as axis, and for the rows the non-numeric one that best separates the region."""
+    """Choose the first numeric sensor as axis, and a category for the rows."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
@@ -45,14 +45,14 @@ def plane(comparison: Comparison) -> Plane:
 
 
 def _covered(comparison: Comparison, dimension: int) -> float:
-    """Return the share of a sensor's values that occur in the region. At 1, the sensor cannot separate the region."""
+    """Return the share of a sensor's values that occur in the region."""
     seen = {cell[dimension] for cell in comparison.cells}
     region = (*comparison.region.cells, *comparison.region.novel)
     return len({cell[dimension] for cell in region} & seen) / len(seen) if region and seen else 1.0
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
-    """Return both worlds' utilities and their difference, by site and axis position; None if no cell was visited."""
+    """Return utilities and their difference by site and position; None if unvisited."""
     if not comparison.sensors or not comparison.cells:
         return None
     shown = plane(comparison)
@@ -73,7 +73,7 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
 
 
 def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
-    """Return the values that get a row; if there are too many, those with the most cells; [None] for a single row."""
+    """Return the values with a row of their own, or [None]."""
     if shown.split is None:
         return [None]
     counted: dict[int, int] = {}
@@ -110,7 +110,7 @@ def _row(
 
 
 def _grid(values: Matrix, places: Sequence[int], bins: Sequence[int]) -> list[list[float | None]]:
-    """Average over the cells at each position; return shape (sites, positions), with None where no cell was visited."""
+    """Average the cells at each position, shape (sites, positions); None if unvisited."""
     column = np.asarray(places, dtype=np.intp) - bins[0]
     known = ~np.isnan(values)
     total = np.zeros((len(bins), values.shape[1]))
@@ -134,7 +134,7 @@ def _axis(sensor: Sensor, dimension: int, bins: Sequence[int], vocabulary: Vocab
 
 
 def _edges(sensor: Sensor, first: int, last: int) -> tuple[float, float]:
-    """Return the bin edges on the axis; the open bins at either end are drawn one bin wide."""
+    """Return the bin edges on the axis, with open bins one bin wide."""
     if not sensor.bins or sensor.low is None or sensor.high is None:
         return first - 0.5, last + 0.5
     width = (sensor.high - sensor.low) / sensor.bins
@@ -158,7 +158,7 @@ def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
 
 
 def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return the average total reward after each episode of both worlds, every search and the repair."""
+    """Return the running mean of the total rewards of all curves."""
     drift = comparison.drift or "deployed"
     curves = [
         _curve("designed", "offline", comparison.totals.get("offline", ())),
@@ -191,5 +191,5 @@ def _curve(name: str, kind: str, totals: Sequence[float], labels: Sequence[str] 
 
 
 def number(value: float) -> float | None:
-    """Return a number rounded to DIGITS significant digits, or None if it is not finite."""
+    """Return a number with DIGITS significant digits; None if not finite."""
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

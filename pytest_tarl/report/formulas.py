@@ -1,4 +1,4 @@
-"""Formulas in a report: a row per formula, with its robustness by world and the first violation."""
+"""The rows of formulas: robustness per world and first violation."""
 
 from __future__ import annotations
 

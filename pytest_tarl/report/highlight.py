@@ -17,7 +17,7 @@ _HUNK = re.compile(r"@@ -(\d+)(?:,(\d+))? \+(\d+)(?:,(\d+))? @@")
 
 @dataclass(frozen=True, slots=True)
 class PatchLine:
-    """One line of a unified diff: its line numbers before and after, if any, and its text as HTML."""
+    """One line of a diff: old and new number, and HTML."""
 
     kind: Kind
     old: int | None

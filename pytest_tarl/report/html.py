@@ -52,7 +52,7 @@ def write(comparison: Comparison, path: Path, *, title: str | None = None) -> No
 
 
 def render(comparison: Comparison, *, title: str | None = None) -> str:
-    """Return the page's text. Raise TarlError if a package of the extra `report` is missing."""
+    """Return the page's text. Raise TarlError without the extra `report`."""
     templates = environment(asset, NEEDED)
     from pytest_tarl.report import highlight
 
@@ -121,12 +121,12 @@ def _library() -> str:
 
 
 def in_script(data: Any) -> str:
-    """Return data as JSON, escaped so that it cannot close the surrounding script element."""
+    """Return data as JSON that cannot close the script element."""
     return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).translate(_IN_SCRIPT)
 
 
 def parts(text: str) -> list[str]:
-    """Split a path or test id into parts; the page may break a line between two of them."""
+    """Split a path or test id where a line may break."""
     return re.findall(r".+?(?:::|[/_.]|$)", text)
 
 
@@ -192,7 +192,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
 
 
 def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether the figure clips the designed curve, because it is longer than all others."""
+    """Return whether the figure clips the designed curve."""
     offline = [len(curve["mean"]) for curve in curves if curve["kind"] == "offline"]
     others = [len(curve["mean"]) for curve in curves if curve["kind"] != "offline"]
     return bool(offline and others) and max(offline) > max(others)

@@ -95,7 +95,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
 
 
 def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return the mean reward in each interval of each range of a drift, by world."""
+    """Return the mean reward per world and interval of a drift's ranges."""
     return [
         {
             "part": row.band.part,
@@ -130,7 +130,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
-    """Return one slice per site, from the list in which it differs most; keep the order of first appearance."""
+    """Return each site's largest slice, in order of appearance."""
     kept: dict[str, Slice] = {}
     for one in slices:
         held = kept.get(one.site.id)
@@ -253,7 +253,7 @@ def _bound(bound: Bound) -> dict[str, Any]:
 
 
 def finite(value: float | None) -> float | None:
-    """Return a number that JSON can represent: numpy scalars become Python numbers, NaN and infinities None."""
+    """Return a number for JSON; None for NaN and infinities."""
     if value is None or not math.isfinite(value):
         return None
     return value if isinstance(value, int) else float(value)

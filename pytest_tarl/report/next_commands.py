@@ -1,4 +1,4 @@
-"""Commands that a report suggests: to repeat the comparison, and to take the next step."""
+"""Commands that repeat the comparison and take the next step."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def command(comparison: Comparison, *flags: str) -> str:
 
 
 def recording(comparison: Comparison) -> str:
-    """Return the command that records a permanent drift as part of the design; run it after applying the repair."""
+    """Return the command that records a repaired permanent drift."""
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
     return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record", *drift])
 
@@ -47,7 +47,7 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
 
 
 def _folder(comparison: Comparison) -> str:
-    """Return the path from the folder where pytest was started to the root, ending with "/", or ""."""
+    """Return the path from pytest's start folder to the root, or ""."""
     target = comparison.target
     return target.removesuffix(comparison.test) if target.endswith(comparison.test) else ""
 
@@ -60,5 +60,5 @@ def _repairable(comparison: Comparison) -> bool:
 
 
 def _happened(comparison: Comparison) -> bool:
-    """Return whether the missions come from a log or bags and can therefore not be repeated."""
+    """Return whether the missions come from a log or from bags."""
     return bool({"--tarl-log", "--tarl-bag"} & {*comparison.flags})

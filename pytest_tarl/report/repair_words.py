@@ -52,7 +52,7 @@ SPARE = 1.5
 
 
 def edit_words(edit: Edit) -> str:
-    """Describe an edit; `→` means that a number is replaced, `×` that a named constant is multiplied."""
+    """Describe an edit, with `→` for a number and `×` for a factor."""
     return edit.what or f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
 
 
@@ -74,7 +74,7 @@ def repair_words(repair: Repair) -> str:
 
 
 def partial_words(partial: Partial, comparison: Comparison) -> str:
-    """Describe the gain of a partial repair and its effect on the designed world."""
+    """Describe a partial repair's gain and its designed effect."""
     sure = f"with about {percent(partial.confidence)} confidence"
     least = "least" if partial.designed_low >= 0.0 else "most"
     return (
@@ -131,7 +131,7 @@ def ways_out(comparison: Comparison) -> str:
 
 
 def wider_tolerance(comparison: Comparison) -> str:
-    """Return advice if the best rejected candidate restored nearly all of the loss, or ""."""
+    """Return advice for a candidate that restored nearly all of the loss, or ""."""
     repair, tolerance = comparison.repair, comparison.verdict.tolerance
     designed, deployed = atr(comparison, "offline"), atr(comparison, "online")
     if repair is None or repair.accepted or designed is None or deployed is None:

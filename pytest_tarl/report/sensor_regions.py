@@ -54,7 +54,7 @@ def runs(ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
-    """Join boxes that have only unvisited cells between them: the hull of joined boxes contains no cell of `others`."""
+    """Join boxes that have only unvisited cells between them."""
     kept, pending, barred = [], list(cover), list(others)
     while pending:
         box = pending.pop(0)
@@ -92,7 +92,7 @@ def _holds(box: Box, cell: Cell) -> bool:
 
 
 class Vocabulary:
-    """Names for bins and sets of cells, given the sensors and the cells visited in either world."""
+    """Names for bins and for sets of cells."""
 
     def __init__(self, sensors: Sequence[Sensor], seen: Iterable[Cell]) -> None:
         self.sensors = tuple(sensors)
@@ -101,7 +101,7 @@ class Vocabulary:
         self.seen = tuple(sorted(set(bins)) for bins in by_sensor)
 
     def words(self, cells: Iterable[Cell], most: int = NAMED) -> str:
-        """Describe a set of cells by at most `most` boxes, which may include unvisited cells."""
+        """Describe a set of cells by at most `most` boxes."""
         chosen = frozenset(cells)
         cover = bridged(boxes(chosen), self.cells - chosen)
         for dimension, sensor in enumerate(self.sensors):
@@ -130,7 +130,7 @@ class Vocabulary:
         return ", ".join(phrase for phrase in phrases if phrase) or "everywhere"
 
     def _several(self, ranges: Sequence[tuple[int, int]]) -> str:
-        """Describe several ranges of the first sensor; name the unit only once, as in `x 1.0-2.0 or 4.0-7.0 m`."""
+        """Describe ranges of the first sensor, such as `x 1.0-2.0 or 4.0-7.0 m`."""
         if len(ranges) == 1:
             return self._phrase(0, *ranges[0])
         joined = runs(ranges)
@@ -142,7 +142,7 @@ class Vocabulary:
         return f"{self.sensors[0].name} {' or '.join(named[:NAMED])}{unit and ' ' + unit}{more}"
 
     def _phrase(self, dimension: int, first: int, last: int) -> str:
-        """Describe a range of bins of one sensor; empty if it covers all visited values of a category."""
+        """Describe a range of bins; "" for all values of a category."""
         sensor, seen = self.sensors[dimension], self.seen[dimension]
         if not sensor.numeric and len(seen) > 1 and first <= seen[0] and last >= seen[-1]:
             return ""
@@ -162,7 +162,7 @@ class Vocabulary:
 
 
 def _interval(sensor: Sensor, first: int, last: int) -> str:
-    """Format the interval of a range of bins, rounded to about a tenth of a bin."""
+    """Format a range of bins, rounded to a tenth of a bin."""
     low, high = sensor.interval(first, last)
     digits = max(0, -math.floor(math.log10(sensor.resolution)))
     unit = sensor.unit and " " + sensor.unit

@@ -1,4 +1,4 @@
-"""Lay out slices (utilities of sites) beside code lines, in per cent of the width, so that the page needs no script."""
+"""Lay out slices beside code lines, in per cent of the width."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TICKS = 4  # approximate number of ticks of an axis
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """A linear scale from values to per cent of the width, which always includes zero."""
+    """A linear scale that includes zero, in per cent of the width."""
 
     low: float
     high: float
@@ -49,7 +49,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """The slices of one taint list; both worlds use the scale `values`, and differences the scale `change`."""
+    """The slices of a taint list, with scales for values and differences."""
 
     rows: tuple[Row, ...]
     values: Scale
@@ -70,7 +70,7 @@ def chart(slices: Sequence[Slice]) -> Chart:
 
 
 def scale(values: Iterable[float]) -> Scale:
-    """Return a scale that includes zero and all finite values, with a margin at both ends."""
+    """Return a scale for all finite values and zero, with margins."""
     known = [0.0, *(value for value in values if math.isfinite(value))]
     low, high = min(known), max(known)
     if low == high:
@@ -80,12 +80,12 @@ def scale(values: Iterable[float]) -> Scale:
 
 
 def _round_step(step: float) -> float:
-    """Return the next larger number that is 1, 2 or 5 times a power of ten."""
+    """Return the next larger number of the form 1, 2 or 5 times 10ⁿ."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))
 
 
 def peak(slices: Iterable[Slice]) -> Slice | None:
-    """Return the slice with the largest difference between the worlds, or None if no slice differs."""
+    """Return the slice with the largest difference, or None."""
     known = [one for one in slices if one.difference and not math.isnan(one.difference)]
     return max(known, key=lambda one: abs(one.difference), default=None)

@@ -27,7 +27,7 @@ def row(comparison: Comparison) -> Row:
 
 
 def side_by_side(rows: Sequence[Row], width: int) -> list[str]:
-    """Return one table for each test that was compared under several drifts; tables are `width` columns wide."""
+    """Return one table per test with several drifts, `width` columns wide."""
     told: list[str] = []
     for test in dict.fromkeys(one[0] for one in rows):
         lines = [one[1:] for one in rows if one[0] == test]

@@ -1,4 +1,4 @@
-"""Sentences shared by terminal and page: the verdict, its loss, regions of sensor space, and places in the source."""
+"""Sentences for terminal and page: verdict, loss, regions and places."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _successes(verdict: Verdict) -> str:
 
 
 def loss_words(comparison: Comparison) -> str:
-    """Format the loss with its interval and effect size; empty if there are too few episodes."""
+    """Format the loss with interval and effect size, if there are enough episodes."""
     offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
     if min(len(offline), len(online)) < 2:
         return ""
@@ -66,12 +66,12 @@ def loss_words(comparison: Comparison) -> str:
 
 
 def _sure(interval: LossInterval) -> str:
-    """Format the confidence of an interval; if no range of totals is declared, call the interval approximate."""
+    """Format an interval's confidence; approximate without a declared range."""
     return f"{'' if interval.exact else 'about '}{percent(interval.confidence)} confidence"
 
 
 def loss_interval(comparison: Comparison) -> str:
-    """Format the confidence interval of the loss, such as `15.1 to 18.3`; empty if it is unbounded."""
+    """Format the interval of the loss, such as `15.1 to 18.3`."""
     interval = comparison.verdict.interval
     low, high = (interval.low, interval.high) if interval else (-math.inf, math.inf)
     if math.isinf(low) or math.isinf(high):
@@ -90,7 +90,7 @@ def _capital(text: str) -> str:
 
 
 def region_words(comparison: Comparison) -> str:
-    """Describe the region where the deployed world differs, with new situations apart; empty if there is none."""
+    """Describe the region in which the worlds differ."""
     vocabulary, region = Vocabulary(comparison.sensors, comparison.cells), comparison.region
     novel = set(region.novel)
     known = [cell for cell in region.cells if cell not in novel]
@@ -117,13 +117,13 @@ def _words_without(comparison: Comparison) -> str:
 
 
 def lost_words(comparison: Comparison, part: str) -> str:
-    """Describe where a part of the reward is lost; empty if none of it is lost or if no situation stands out."""
+    """Describe where a part of the reward is lost."""
     cells = comparison.lost.get(part, ()) if part in dict(lost_parts(comparison)) else ()
     return Vocabulary(comparison.sensors, comparison.cells).words(cells) if cells else ""
 
 
 def lost_parts(comparison: Comparison) -> list[tuple[str, float]]:
-    """Return the parts of the reward that decreased, and by how much per episode; the largest loss comes first."""
+    """Return the decreased parts of the reward, largest loss first."""
     changed = [(name, after - before) for name, (before, after) in comparison.parts.items()]
     least = NEGLIGIBLE * sum(by for _, by in changed if by < 0)
     return sorted(((name, by) for name, by in changed if by < least), key=lambda one: one[1])

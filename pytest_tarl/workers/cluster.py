@@ -1,4 +1,4 @@
-"""Workers on a Dask cluster; each of its threads keeps one process that runs episodes."""
+"""Workers on a Dask cluster, one process per thread."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def leave() -> None:
 
 @contextmanager
 def joined(address: str) -> Iterator[tuple[Executor, int]]:
-    """Connect to a cluster. Return its executor and the number of parallel episodes. Raise SettingsError on failure."""
+    """Connect to a cluster; return executor and parallel episodes. Raise SettingsError."""
     try:
         from distributed import Client
     except ImportError:

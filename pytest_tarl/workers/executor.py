@@ -1,4 +1,4 @@
-"""Run the episodes of a test on workers: local processes behind concurrent.futures, or a Dask cluster."""
+"""Run the episodes of a test on local or remote workers."""
 
 from __future__ import annotations
 
@@ -101,11 +101,11 @@ class Answer:
             raise RecordingError("The cluster cancelled an episode: check its scheduler's log.") from None
 
     def cancel(self) -> bool:
-        """Cancel the episode unless a worker has started it; return whether it was cancelled."""
+        """Cancel the episode; return whether it had not started yet."""
         return self.future.cancel()
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result when the episode ends, in the thread that receives the result."""
+        """Call a function with the result, in the thread that receives it."""
 
         def ended(future: Future[bytes]) -> None:
             if future.cancelled() or future.exception() is not None:
@@ -139,7 +139,7 @@ def opened(
 
 
 def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
-    """Return the description of a worker's job: everything that the worker needs to prepare the item."""
+    """Return all that a worker needs to prepare the item."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
     rooted = {"rootdir": str(config.rootpath)}

@@ -1,4 +1,4 @@
-"""Worker processes. If a worker dies, its episode is retried, at most TRIES times in total."""
+"""Worker processes, with retries after a worker's death."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held its worker's interpreter lock, so the worker was ended. A second run would hang, too."""
+    """A worker was ended because a node held its interpreter lock."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Worker:
         threading.Thread(target=self._listen, name="tarl-listener", daemon=True).start()
 
     def ask(self, request: bytes) -> bytes:
-        """Send a request and return the answer. Raise WorkerDiedError or WorkerHeldError if the worker has ended."""
+        """Send a request; return the answer. Raise WorkerDiedError or WorkerHeldError."""
         asked, told = self._pipes()
         self._silent, self._asked = 0, True
         try:
@@ -122,7 +122,7 @@ class Worker:
         return ""
 
     def dismiss(self) -> None:
-        """Let the worker tear down its fixtures and exit; end it after PATIENCE seconds."""
+        """Let the worker tear down, or end it after PATIENCE seconds."""
         with suppress(OSError, ValueError):
             protocol.write(self._pipes()[0], b"")
         with suppress(subprocess.TimeoutExpired):
@@ -160,7 +160,7 @@ def place_held(log: str) -> str:
 
 
 class Pool:
-    """The workers of this process, by job. Workers start on demand. Several threads may use the pool."""
+    """The workers of this process by job, for several threads."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -169,7 +169,7 @@ class Pool:
         self._closed = False
 
     def serve(self, post: Post, request: bytes) -> bytes:
-        """Run a request on a free worker. Raise WorkerDiedError if `TRIES` workers in a row died."""
+        """Run a request. Raise WorkerDiedError if TRIES workers in a row died."""
         for _ in range(TRIES - 1):
             with suppress(WorkerDiedError):
                 return self._once(post, request)
@@ -214,7 +214,7 @@ class Pool:
             return waiting.pop() if waiting else None
 
     def _move(self, worker: Worker, post: Post | None) -> None:
-        """Remove a worker from the busy ones; with a `post` (a job), make it available for this job."""
+        """Remove a busy worker; with a `post`, keep it for this job."""
         with self._lock:
             self._busy.remove(worker)
             if post is not None:

@@ -34,7 +34,7 @@ def write(pipe: BinaryIO, message: bytes) -> None:
 
 
 def read(pipe: BinaryIO) -> bytes | None:
-    """Receive one message, or None if the pipe is closed, even in the middle of a message."""
+    """Receive one message, or None if the pipe was closed."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         return None
@@ -133,7 +133,7 @@ class SkippedError(TarlError):
 
 
 class EndedError(TarlError):
-    """The test called `pytest.exit` in a worker to end the whole run; the message is its reason."""
+    """The test ended the whole run by `pytest.exit`, with this reason."""
 
 
 def _error(name: str) -> Callable[[str], TarlError]:

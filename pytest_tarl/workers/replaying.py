@@ -1,4 +1,4 @@
-"""Worker side: replay bags through the nodes of a test, with the site numbers of its recording."""
+"""Replay bags in a worker, with the recording's site numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pytest_tarl.sensors import binning_digest
 
 @dataclass(frozen=True)
 class RenumberedRollout:
-    """A rollout that renumbers sites: `number[n]` is the new number of site n, or -1 to drop the site."""
+    """A rollout that renumbers site n to `number[n]`, or drops it for -1."""
 
     rollout: ItemRollout
     number: Ints

@@ -1,4 +1,4 @@
-"""Replay bags through the nodes of a recorded test in a worker process, without a pytest run around it."""
+"""Replay bags through recorded nodes in a worker process."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Replays:
         self._pool.close()
 
     def _posted(self, bag: Path) -> Post:
-        """Return the description of the worker's job; one bag in its arguments makes pytest collect the test."""
+        """Return the worker's job; its bag makes pytest collect the test."""
         test = self.fixture.test.partition("[")[0]
         if not (self.root / test.partition("::")[0]).is_file():
             raise SettingsError(

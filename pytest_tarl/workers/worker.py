@@ -1,4 +1,4 @@
-"""The main loop of a worker process: prepare one test, then run one episode per request."""
+"""The main loop of a worker: one test, one episode per request."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def serve(requests: int, answers: int, config: Config | None, problem: str) -> N
 
 
 class Server:
-    """The pytest plugin of a worker. The plugin answers requests instead of running tests."""
+    """The pytest plugin that answers requests instead of running tests."""
 
     def __init__(self, post: dict[str, Any], requests: BinaryIO, answers: BinaryIO) -> None:
         self.post = post

@@ -1,4 +1,4 @@
-"""Entry script of a worker process; it imports pytest before any module of TARL."""
+"""Entry script of a worker; imports pytest before TARL."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sys
 
 
 def main() -> None:
-    """Move the pipes away before a conftest can write to them, configure pytest, then serve requests."""
+    """Move the pipes away, configure pytest and serve requests."""
     # Ctrl-C is handled by the parent run, which ends its workers
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     pipes = _pipes()
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def _pipes() -> tuple[int, int]:
-    """Move stdin and stdout to new descriptors for messages, where no node can read or write them."""
+    """Move stdin and stdout to descriptors that nodes cannot use."""
     requests, answers = os.dup(0), os.dup(1)
     nowhere = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nowhere, 0)
