@@ -14,7 +14,7 @@ from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.model import Culprit, OperandEffect, SitePlace, Slice, TaintList
 
-BELOW = 0.49  # maximum score of a site without a changeable operand beside sites with one
+BELOW = 0.49  # maximum score of sites without changeable operands, if other sites have some
 
 
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:

@@ -1,7 +1,6 @@
 """Patches of a node's copy of rospy: waits, sent and received messages, initialisation and shutdown.
 
-All other parts of rospy stay unchanged. Every replacement checks the running task; in threads of rospy and in the
-world's copy, it calls the original.
+All other parts of rospy stay unchanged. A replaced function calls the original one outside of node tasks.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The names of all parameters that a program reads, also names that it composes from parts.
 
 The analysis of the program knows the names at each call, for each caller and iteration. The list of names is
-complete only if the analysis has reached every call, from every place that calls the enclosing function.
+complete only if the analysis has reached every call from every caller.
 """
 
 from __future__ import annotations

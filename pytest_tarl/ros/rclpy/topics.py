@@ -77,7 +77,7 @@ class Publisher:
         return True
 
     def get_subscription_count(self) -> int:
-        """Return the number of subscriptions. The simulated world counts as one."""
+        """Return the number of subscriptions. The simulated world has one, too."""
         return 1 + len(self._place.subscriptions)
 
     def destroy(self) -> None:
@@ -158,7 +158,7 @@ class Subscription:
                 "reception_sequence_number": None}  # fmt: skip
 
     def get_publisher_count(self) -> int:
-        """Return the number of publishers. The simulated world counts as one."""
+        """Return the number of publishers. The simulated world has one, too."""
         return 1 + len(self._place.publications)
 
     def destroy(self) -> None:
