@@ -113,10 +113,10 @@ class Interface:
 class Seen:
     """The topics and services of a node whose code was not read, from its C++ source or its arguments.
 
-    `certain` is True if the node has no other topics and services, except those of transforms and parameters. `through` is True if
-    data of each subscribed topic may reach each published topic. `kinds` are all types of messages and services
-    that the node may use; None if they are unknown. `never` are types that it certainly does not use. `words` are
-    the words of the names that the node may give topics and services; None if it may use any words.
+    `certain` is True if the node has no other topics and services, except those of transforms and parameters. `through`
+    is True if data of each subscribed topic may reach each published topic. `kinds` are all types of messages and
+    services that the node may use; None if they are unknown. `never` are types that it certainly does not use. `words`
+    are the words of the names that the node may give topics and services; None if it may use any words.
     """
 
     ends: tuple[Endpoint, ...] = ()
