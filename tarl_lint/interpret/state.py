@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 from tarl_lint.interpret.budget import MAX_STATEMENTS, PROGRAM_LIMIT, VALUES_HANDLED
@@ -44,9 +45,9 @@ class NullnessFacts:
 class Registered:
     """The calls that register a root, as nodes that depend on the conditions of these calls."""
 
-    node: int  # the node on which the root's publish calls depend
+    node: int | None = None  # the node on which the root's publish calls depend
     ways: set[int] = field(default_factory=set)
-    always: bool = False  # whether the root runs without such a call
+    plain: set[Hashable] = field(default_factory=set)  # places of calls without conditions
 
 
 @dataclass(slots=True, eq=False)

@@ -214,7 +214,8 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     caller, call = frame.caller, frame.call
     if caller is None or call is None:
         ctx.graph.depend(node, [n for n, _ in frame.guards])
-        if (registered := ctx.registered.get(ctx.store.root.key)) is not None:
+        registered = ctx.registered.get(ctx.store.root.key)
+        if registered is not None and registered.node is not None:
             ctx.graph.depend(node, (registered.node,))
         return
     if frame.shared:

@@ -18,16 +18,20 @@ def note(ctx: Interpreter, root: Hashable) -> None:
     """Record that the current statement registers a root."""
     frame = ctx.stack[-1] if ctx.stack else None
     statement = frame.statement if frame is not None else None
+    known = ctx.registered.setdefault(root, Registered())
     if frame is None or statement is None:
-        if root in ctx.registered:
-            ctx.registered[root].always = True
+        known.plain.add(None)
         return
+    key = (frame.id, statement.id, "registers", *frame.turn)
+    around = ctx.registered.get(ctx.store.root.key)  # the root that registers this one
+    if not ctx.guards and not ctx.branches(frame, statement) and (around is None or around.node is None):
+        known.plain.add(key)
+        return
+    known.plain.discard(key)
     place = Place(frame, statement, "call", statement.pos)
-    way = ctx.graph.node((frame.id, statement.id, "registers", *frame.turn), place, frozenset())
-    known = ctx.registered.get(root)
-    if known is None:
-        node = ctx.graph.node(("registered", root), place, frozenset())
-        known = ctx.registered[root] = Registered(node)
+    way = ctx.graph.node(key, place, frozenset())
+    if known.node is None:
+        known.node = ctx.graph.node(("registered", root), place, frozenset())
     known.ways.add(way)
     publications.under(ctx, frame, statement, way)
     ctx.graph.depend(way, [n for n, _ in ctx.guards])
@@ -35,8 +39,9 @@ def note(ctx: Interpreter, root: Hashable) -> None:
 
 def connect(ctx: Interpreter) -> None:
     """Let the conditions decide about the roots that are registered only under conditions that a source reaches."""
-    open_roots = {root: one for root, one in ctx.registered.items() if not one.always}
+    open_roots = {root: one for root, one in ctx.registered.items() if not one.plain}
     while decided := [r for r, one in open_roots.items() if all(way in ctx.graph.live for way in one.ways)]:
         for root in decided:
             one = open_roots.pop(root)
-            ctx.graph.depend(one.node, sorted(one.ways))
+            if one.node is not None:
+                ctx.graph.depend(one.node, sorted(one.ways))
