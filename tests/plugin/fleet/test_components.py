@@ -87,14 +87,18 @@ def test_balanced_missions_give_the_analysis_of_variance() -> None:
 
 
 def test_the_effects_of_a_factor_are_relative_to_the_mean_over_missions() -> None:
-    """Of 12 missions, 2, 4 and 6 have the levels 0, 1 and 2, which earn 0, 3 and 9: their mean is 5.5."""
-    level = np.repeat([0, 1, 2], [2, 4, 6])
-    reward = np.array([0.0, 3.0, 9.0])[level]
-    robot = np.arange(12) % 4
-    totals = summed(robot, level[:, None], reward - reward.mean(), (3,))
-    site, *_ = components(totals, ("site",), 0.95, np.random.default_rng(0))
-    assert site.effects == pytest.approx((-5.5, -2.5, 3.5))
-    assert site.variance == pytest.approx(float(np.var(reward)))
+    """Of 12 missions, 2, 4 and 6 have the sites 0, 1 and 2, which earn 0, 3 and 9: 5.5 on average.
+
+    Three of them, one at each site, are in a season that earns 4 more.
+    """
+    site = np.repeat([0, 1, 2], [2, 4, 6])
+    season = np.isin(np.arange(12), [0, 2, 6]).astype(int)
+    reward = np.array([0.0, 3.0, 9.0])[site] + 4.0 * season
+    totals = summed(np.arange(12) % 4, np.stack([site, season], axis=1), reward, (3, 2))
+    sites, seasons, *_ = components(totals, ("site", "season"), 0.95, np.random.default_rng(0))
+    assert sites.effects == pytest.approx((-5.5, -2.5, 3.5))
+    assert seasons.effects == pytest.approx((-1.0, 3.0))
+    assert sites.variance == pytest.approx(float(np.var(np.array([0.0, 3.0, 9.0])[site])))
 
 
 def test_effects_of_coinciding_factors_cannot_be_separated() -> None:
