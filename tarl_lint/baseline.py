@@ -177,7 +177,7 @@ def _words(entry: Accepted, fields: Mapping[str, str]) -> dict[str, Any]:
 def save(path: Path, baseline: Baseline) -> None:
     """Write a baseline atomically. Raises BaselineError if the file cannot be written."""
     try:
-        write_atomically(path, dumps(baseline).encode("utf-8", "surrogateescape"))
+        write_atomically(path, dumps(baseline).encode("utf-8", "surrogateescape"), through_links=True)
     except OSError as error:
         raise BaselineError(
             f"The baseline {shown(path)} cannot be written: {error.strerror}. Name another with --baseline."

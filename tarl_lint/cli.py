@@ -227,7 +227,7 @@ def _write_file(path: Path, lines: Iterable[Line]) -> None:
     text = io.StringIO()
     paint.write(lines, text, colour=False)
     try:
-        write_atomically(path, text.getvalue().encode("utf-8", "surrogateescape"))
+        write_atomically(path, text.getvalue().encode("utf-8", "surrogateescape"), through_links=True)
     except OSError as error:
         raise OutputError(f"The report cannot be written to {path.as_posix()}: {error.strerror}.") from None
 

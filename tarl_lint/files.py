@@ -6,14 +6,16 @@ import os
 from pathlib import Path
 
 
-def write_atomically(path: Path, content: bytes, *, parents: bool = False) -> None:
+def write_atomically(
+    path: Path, content: bytes, *, parents: bool = False, through_links: bool = False
+) -> None:
     """Write a file under another name and then rename it, so that readers never see a partial file.
 
-    With `parents`, make the missing folders above it. An existing file keeps its mode. A device or pipe is written to
-    directly and never replaced. Raise OSError on failure.
+    With `parents`, make the missing folders above it. A symbolic link is replaced by the file, so that a link in a
+    project cannot lead the write out of it; with `through_links`, for a file that the user named, the link's target is
+    written. An existing file keeps its mode. A device or pipe is written to directly. Raise OSError on failure.
     """
-    # if the path is a symbolic link, write to its target instead of replacing the link
-    target = Path(os.path.realpath(path))
+    target = Path(os.path.realpath(path)) if through_links else path
     if target.exists() and not target.is_file():
         target.write_bytes(content)
         return

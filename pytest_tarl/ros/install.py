@@ -25,9 +25,9 @@ from pytest_tarl.ros.missing import as_read_by, refuse, unsupported_module
 from pytest_tarl.ros.opencv_windows import windows_discarded
 from pytest_tarl.ros.reexports import is_reexported, reexported
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
-from pytest_tarl.ros.signals import signals_of_nodes
 from pytest_tarl.ros.standins import MISSING, STANDALONE, STANDINS, TALKING
 from pytest_tarl.ros.threads import threads_as_tasks
+from pytest_tarl.ros.unix_signals import signals_of_nodes
 from pytest_tarl.stale_modules import holders
 
 if TYPE_CHECKING:

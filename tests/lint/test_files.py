@@ -45,9 +45,18 @@ def test_missing_folders_are_made_on_request(tmp_path):
 @pytest.mark.parametrize("goal", ["flows.json", "loop"])
 def test_a_link_is_followed_unless_it_leads_to_itself(tmp_path, goal):
     (tmp_path / "loop").symlink_to(tmp_path / goal)
-    write_atomically(tmp_path / "loop", b"new")
+    write_atomically(tmp_path / "loop", b"new", through_links=True)
     assert (tmp_path / goal).read_bytes() == b"new"
     assert (tmp_path / "loop").is_symlink() == (goal != "loop")
+
+
+def test_a_link_in_a_project_is_replaced(tmp_path):
+    (tmp_path / "outside").write_bytes(b"old")
+    (tmp_path / "link").symlink_to(tmp_path / "outside")
+    write_atomically(tmp_path / "link", b"new")
+    assert (tmp_path / "outside").read_bytes() == b"old"
+    assert not (tmp_path / "link").is_symlink()
+    assert (tmp_path / "link").read_bytes() == b"new"
 
 
 def test_an_interrupt_is_passed_on_before_and_after_the_rename(tmp_path, monkeypatch):
