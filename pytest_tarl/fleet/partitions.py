@@ -171,9 +171,8 @@ def sorted_rows(some: Sequence[Transitions]) -> Transitions:
     }
     keys = [columns[name] for name in ("number", "cell", "next_cell")]
     width = 2 + max((int(one.max()) for one in keys[1:] if one.size), default=0)
-    key = (keys[0] * width + keys[1]) * width + keys[
-        2
-    ]  # unique, because keys[2] is from END = -1 to width - 2
+    # different rows have different keys, because keys[2] is from END = -1 to width - 2
+    key = (keys[0] * width + keys[1]) * width + keys[2]
     steps = np.diff(key)
     if (steps > 0).all():
         return Transitions(**columns)
