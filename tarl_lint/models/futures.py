@@ -11,7 +11,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.heap import RESULT, item_field
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
+from tarl_lint.memory.values import BOTTOM, NONE, UNKNOWN, Value, join, pointer
 from tarl_lint.models import containers, context_managers
 from tarl_lint.models.containers import READERS as CONTAINER_READERS
 from tarl_lint.models.records import RECORDS
@@ -25,15 +25,20 @@ def _set_result(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _result(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a future's result; for a library's future, the data passed to it."""
-    result = BOTTOM
+    """Return a future's result; for a library's future, an object with the data passed to the future."""
+    result, passed = BOTTOM, None
     for obj in it.base.objects:
         stored = ctx.store.get((obj, RESULT))
         if stored is not None:
             result = join(result, heap.arrive(ctx, stored, it.base.deps))
         if stored is None or heap.content(ctx, obj).deps:
-            result = join(result, Value(ctx.use(Value(it.base.deps, frozenset([obj])))))
-    return result
+            passed = (passed or NONE) | ctx.use(Value(it.base.deps, frozenset([obj])))
+    if passed is None:
+        return result
+    made = recency.allocate(ctx, "lib", it.frame, ("result", it.call.slot))
+    if passed:
+        ctx.store.put((made, heap.ANY), Value(passed))
+    return join(result, pointer(made))
 
 
 def _is_done(ctx: Interpreter, it: Invocation) -> Value:
