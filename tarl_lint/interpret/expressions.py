@@ -298,6 +298,7 @@ def _yield(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     inner, value = value, heap.elements(ctx, value) if expr.kind == "from" else value
     value = ctx.carry(value, ctx.node(frame, ("yield", expr.pos), "return"))
     frame.yielded = join(frame.yielded, value)
+    frame.pauses[expr.pos] = ctx.store.since(frame.depth_of_layers)
     if frame.caller is not None and frame.caller.statement is None:
         # a library runs the generator, and anything may happen before the generator continues
         ctx.ops.wait(ctx, frame)

@@ -36,11 +36,16 @@ from tarl_lint.models.ros.endpoints import Acceptance, Publisher
 
 
 def run(ctx: Interpreter, frame: Frame) -> Value:
-    """Execute a frame's body and return its result."""
-    frame.returns = []
+    """Execute a frame's body and return its result.
+
+    A generator that never ends leaves the stores that it had made when it paused.
+    """
+    frame.returns, frame.pauses = [], {}
     depth = len(ctx.store.layers) - 1
     if block(ctx, lower_body(frame.function, frame.program.package), frame):
         frame.returns.append((ctx.store.since(depth), const(None)))
+    elif not frame.returns:
+        frame.returns = [(state, BOTTOM) for state in frame.pauses.values()]
     result = BOTTOM
     for _, value in frame.returns:
         result = join(result, value)

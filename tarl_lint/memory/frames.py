@@ -130,6 +130,7 @@ class Frame(Obj):
         "outer",
         "owner",
         "passed",
+        "pauses",
         "program",
         "recorded",
         "result",
@@ -212,6 +213,8 @@ class Frame(Obj):
             None  # arguments of all calls that share this frame, joined
         )
         self.yielded = BOTTOM
+        # `yield` → stores of the generator when it last paused there
+        self.pauses: dict[tuple[int, int, int, int], dict[Key, Value]] = {}
         self.arguments: list[Value] = []
 
     def release(self) -> None:
@@ -220,6 +223,7 @@ class Frame(Obj):
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
         self.recorded = self.passed = self.thrown = None
         self.heads.clear()
+        self.pauses.clear()
         self.taken.clear()
         self.spread.clear()
 

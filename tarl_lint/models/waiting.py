@@ -31,7 +31,8 @@ def note_filling(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> 
 
 
 def wait_for_element(ctx: Interpreter, it: Invocation) -> None:
-    """Wait until another thread puts an element into a queue."""
+    """Wait until another thread puts an element into a queue; meanwhile, other code stores values."""
+    ctx.ops.wait(ctx, it.frame)
     if not ctx.always_filled(it.base.objects):
         ctx.ops.may_wait(ctx, _got(ctx, it.base.pts, it), it.frame)
 
@@ -44,7 +45,8 @@ def may_be_empty(ctx: Interpreter, it: Invocation, raises: str) -> None:
 
 
 def wait_for_flag(ctx: Interpreter, it: Invocation) -> None:
-    """Wait until another thread sets an event, or notifies a condition."""
+    """Wait until another thread sets an event, or notifies a condition; meanwhile, other code stores values."""
+    ctx.ops.wait(ctx, it.frame)
     flags = [v for o in it.base.objects if (v := ctx.store.get((o, FLAG))) is not None]
     if flags and not ctx.always_filled(it.base.objects):
         node = ctx.node(it.frame, ("awaited", it.call.slot), "condition")
