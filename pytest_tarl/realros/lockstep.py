@@ -80,9 +80,8 @@ class WireScheduler(Scheduler):
 
     def __init__(self) -> None:
         super().__init__()
-        self.collect: Callable[[], bool] = (
-            bool  # called to receive a message in transit; returns whether there was one
-        )
+        # called to receive a message in transit; returns whether there was one
+        self.collect: Callable[[], bool] = bool
         self.enter: Callable[[Process], None] | None = None  # called before a task of a process is resumed
 
     def settle(self) -> None:

@@ -49,9 +49,8 @@ class Order:
     progress: Progress
     patches: Path
     recorded: Path | None = None  # file of the recording
-    neighbours: Callable[[], Sequence[Neighbour]] = (
-        tuple  # called only after a candidate has passed all other checks
-    )
+    # called only after a candidate has passed all other checks
+    neighbours: Callable[[], Sequence[Neighbour]] = tuple
     world: Drift | None = None  # the declaration of the drift
     declared: tuple[float, float] | None = None  # declared range of the total reward of an episode
     searched: Goal | None = None  # the goal after `enriching` has added seeds, if it ran

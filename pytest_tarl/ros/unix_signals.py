@@ -23,9 +23,8 @@ from pytest_tarl.ros.exiting import ProcessExit
 from pytest_tarl.ros.process import Process, running_process
 from pytest_tarl.ros.scheduler import Task, running_task
 
-_BY_A_SIGNAL = (
-    128  # a shell shows this number plus that of the signal as the status of a process that a signal ended
-)
+# a shell shows this number plus that of the signal as the status of a process that a signal ended
+_BY_A_SIGNAL = 128
 _HARMLESS = frozenset(
     getattr(signal, name)
     for name in ("SIGCHLD", "SIGCONT", "SIGSTOP", "SIGTSTP", "SIGTTIN", "SIGTTOU", "SIGURG", "SIGWINCH")
@@ -41,9 +40,8 @@ class _Signals:
         self.process = process
         self.handlers: dict[int, Any] = {}
         self.paused: list[Task] = []
-        self.alarm = self.interval = (
-            0  # the instant of the next alarm and the time between alarms; 0 without one
-        )
+        # the instant of the next alarm and the time between alarms; 0 without one
+        self.alarm = self.interval = 0
         self._set = 0  # how often the alarm was set; an alarm that was set again does not ring
 
     def handler(self, number: int) -> Any:

@@ -32,9 +32,8 @@ PAIRED = 2  # minimum number of common seeds for comparing two candidates
 # a mission is compared with the designed mission of its seed if its reward is less than `near` by at most this share of
 # the distance between the drifted missions and `near`
 LACKS = 0.1
-LATE = (
-    1.2  # a failed mission did not end in time if it is at least this many times as long as designed missions
-)
+# a failed mission did not end in time if it is at least this many times as long as designed missions
+LATE = 1.2
 
 
 @dataclass(frozen=True)

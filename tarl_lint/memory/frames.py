@@ -209,9 +209,8 @@ class Frame(Obj):
         self.result = BOTTOM
         self.recorded: object = None  # the last run of this frame, which a call with equal inputs can replay
         self.shared = False  # whether calls from several places share this frame, with joined arguments
-        self.passed: tuple[list[Value], dict[str, Value]] | None = (
-            None  # arguments of all calls that share this frame, joined
-        )
+        # arguments of all calls that share this frame, joined
+        self.passed: tuple[list[Value], dict[str, Value]] | None = None
         self.yielded = BOTTOM
         # `yield` → stores of the generator when it last paused there
         self.pauses: dict[tuple[int, int, int, int], dict[Key, Value]] = {}

@@ -16,9 +16,8 @@ from tarl_lint.memory.reads import Reads, complete
 from tarl_lint.memory.values import Branches, Nodes
 
 MAX_NODES = 12_000  # if a program has more nodes than this, content arrives without carriers
-MAX_EDGES = (
-    200_000  # after this number of data edges in a program, at most FEW dependencies of a value get edges
-)
+# after this number of data edges in a program, at most FEW dependencies of a value get edges
+MAX_EDGES = 200_000
 FEW = 8
 MANY = 16  # maximum number of separate nodes in a field with weak updates; more nodes are merged
 MANY_CARRIERS = 64  # the same limit for a field that holds pointers to objects with content

@@ -42,9 +42,8 @@ from pytest_tarl.ros.rclpy.utilities import (
     try_shutdown,
 )
 
-clock = duration = clock_type = (
-    time  # `import rclpy` is enough for rclpy.duration.Duration, as in rclpy itself
-)
+# `import rclpy` is enough for rclpy.duration.Duration, as in rclpy itself
+clock = duration = clock_type = time
 publisher = subscription = topics
 client = service
 

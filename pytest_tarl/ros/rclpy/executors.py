@@ -62,9 +62,8 @@ class Executor:
         self._tasks: list[Task] = []
         self._batch: deque[Entity] = deque()
         self._waiting: list[RunningTask] = []
-        self._stirred = (
-            True  # whether an entity may have become ready since the last check; timers do not count
-        )
+        # whether an entity may have become ready since the last check; timers do not count
+        self._stirred = True
         self._is_shutdown = False
         self._active, self._limit = 0, 1  # number of running callbacks, and the largest number allowed
         self.context.on_wake(self.wake)

@@ -110,9 +110,8 @@ class Subscription:
         self.callback_group = group
         self.qos_profile = profile
         self.queue: deque[Any] = deque(maxlen=profile.capacity)
-        self.arrived: Callable[[], None] | None = (
-            None  # called when a message arrives, in addition to waking the executor
-        )
+        # called when a message arrives, in addition to waking the executor
+        self.arrived: Callable[[], None] | None = None
         self._place = place
         wants_kept = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         self.process.bus.attach(self, place, wants_kept=wants_kept)

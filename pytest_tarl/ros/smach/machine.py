@@ -24,9 +24,8 @@ class StateMachine(Container):
     ) -> None:
         super().__init__(outcomes, input_keys, output_keys)
         self._transitions: dict[str, dict[str, str | None]] = {}
-        self._chained: tuple[str, list[str]] | None = (
-            None  # last state of add_auto, and its outcomes to connect
-        )
+        # last state of add_auto, and its outcomes to connect
+        self._chained: tuple[str, list[str]] | None = None
         self._preempted: Any = None  # state to which the request to end was passed on
 
     @staticmethod

@@ -342,9 +342,8 @@ def scheduler() -> Iterator[Any]:
     from distributed import LocalCluster
 
     options = {"processes": False, "protocol": "tcp", "silence_logs": 50}
-    options["dashboard_address"] = (
-        "127.0.0.1:0"  # any free port; without, Dask takes 8787, which may be in use
-    )
+    # any free port; without, Dask takes 8787, which may be in use
+    options["dashboard_address"] = "127.0.0.1:0"
     with LocalCluster(n_workers=0, threads_per_worker=1, **options) as cluster:
         yield cluster
 

@@ -13,9 +13,8 @@ from tests.plugin.report.hostile import HOSTILE, HUGE, PIECES, PROBE, planted
 from tests.plugin.report.test_browser import browser, opened
 
 __all__ = ["browser"]
-SCRIPTS = (
-    3  # data, script of the page and probe; the page removes the element of its library once it is loaded
-)
+# data, script of the page and probe; the page removes the element of its library once it is loaded
+SCRIPTS = 3
 FIELDS = {
     "test", "drift", "path", "code", "qualname", "source", "sink", "unit", "field", "guard", "diff", "patch", "what",
     "method", "formula", "part", "ranking", "target",
