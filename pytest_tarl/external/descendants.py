@@ -74,7 +74,7 @@ def die_with_parent() -> Callable[[], None]:
 
 
 def wait_for_end_of_parent() -> None:
-    """Wait for the end of this process's parent. Raise OSError."""
+    """Wait for the end of this process's parent. Raise OSError if that is impossible."""
     if sys.platform != "linux":
         raise OSError
     parent = os.pidfd_open(os.getppid())

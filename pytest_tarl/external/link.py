@@ -40,7 +40,7 @@ class Turn:
 
 
 class Link:
-    """A node in its own context; use it in one thread."""
+    """A node in its own context, which passes events to `say`; use it in one thread."""
 
     def __init__(self, domain: int, clock: str, say: Say) -> None:
         from rclpy.context import Context
@@ -77,7 +77,7 @@ class Link:
         self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
-        """Wait for an event and handle it, after all earlier messages.
+        """Wait up to `seconds` for an event; handle earlier messages before it.
 
         In each cycle, rclpy's executor takes one message from each subscription and then the answers. An answer can
         therefore overtake the second message on a topic, which may be the state after a step.
@@ -205,7 +205,7 @@ class Link:
             self._ask(names, partial(self._start, client, asked))
 
     def _asked_first(self) -> list[str]:
-        """Return the parameter services of all nodes that got commands."""
+        """Return the parameter services to call, once per command sent to their nodes."""
         times = Counter[str]()
         for topic, commands in self._sent.items():
             for name in self._receivers.get(topic, ()):

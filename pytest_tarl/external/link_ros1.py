@@ -42,7 +42,7 @@ def _pause() -> float:
 
 
 class LinkROS1:
-    """The only rospy node of the process; use it in one thread."""
+    """The only rospy node of the process, which passes events to `say`; use it in one thread."""
 
     def __init__(self, clock: str, say: Say) -> None:
         import rosgraph

@@ -81,7 +81,7 @@ class Simulator:
         KEPT.running = self.setup
 
     def advance(self, dt: float) -> None:
-        """Run simulator and nodes for `dt` s. Raise SimulatorLostError."""
+        """Run simulator and nodes for `dt` s of simulator time. Raise SimulatorLostError."""
         self._usable = False
         self._connect()
         self._target += nanoseconds(dt)
@@ -237,7 +237,7 @@ class Simulator:
             self._ros.step(seconds(until - self._ros.scheduler.time))
 
     def _call(self, call: Call) -> int:
-        """Call a service and wait; return the time of the request (ns)."""
+        """Call a service and wait; return the time of the request (ns of this machine's clock)."""
         self._calls += 1
         number = self._calls
         self._client.do("call", id=number, service=call.service, request=dict(call.request))

@@ -48,7 +48,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Robots:
-    """All robots by name, and those that e-BH reports at rate `q`."""
+    """All robots by name, and those that e-BH reports at the false discovery rate `q`."""
 
     q: float
     every: tuple[Robot, ...]

@@ -38,7 +38,7 @@ class Cluster:
 
 @dataclass(frozen=True)
 class Clusters:
-    """The clusters, largest first, and the robots without one."""
+    """The clusters (largest first), robots without significant cells, number not compared."""
 
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()

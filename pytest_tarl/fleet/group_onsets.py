@@ -25,7 +25,7 @@ IN_TIME = "SELECT number FROM missions ORDER BY group_number, time, mission"
 def judged(
     database: Database, first: Monitor, scores: Scores, engine: Engine, groups: Sequence[Group], q: float
 ) -> Robots:
-    """Return the evidence on each group, and the groups that e-BH reports at rate `q`."""
+    """Return the evidence on groups, and those reported at the false discovery rate `q`."""
     order = np.asarray(database.columns(IN_TIME)["number"]).astype(np.int64)
     ends = np.cumsum([group.missions for group in groups])
     names = [" ".join(group.values) for group in groups]

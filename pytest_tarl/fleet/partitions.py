@@ -28,7 +28,7 @@ RESULTS = ("mission", "passed", "total", "steps")
 
 @dataclass(frozen=True)
 class Wanted:
-    """The selected missions of a part: their IDs and their numbers in the query."""
+    """The selected missions of a part: their sorted IDs, and their numbers in the query."""
 
     cells: str  # file with the transitions between cells
     missions: str  # file with the results of the missions

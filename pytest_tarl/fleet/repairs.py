@@ -67,7 +67,7 @@ class Strata:
 
 
 def effects(database: Database, by: Sequence[str]) -> tuple[Effect, ...]:
-    """Return the effect of each repair in each group of missions."""
+    """Return the effect of each repair in each group; the columns `by` form the groups."""
     columns = tuple(one for one in by if one != "repair")
     repairs = [
         one for (one,) in database.names("SELECT DISTINCT repair FROM missions WHERE repair <> '' ORDER BY 1")
@@ -118,7 +118,7 @@ def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Int
 
 
 def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float) -> Effect:
-    """Return the effect over the strata. Each bound is one-sided."""
+    """Return the effect over the strata, with one-sided bounds of the given confidence."""
     counts = rows.count.sum(axis=0).astype(int).tolist() if len(rows.robot) else [0, 0]
     robots = [len(set(rows.robot[rows.count[:, arm] > 0].tolist())) for arm in (0, 1)]
     (reward, reward_bound), (success, success_bound) = (

@@ -55,7 +55,7 @@ class Bet:
         return self.wealth([0.0] * episodes) < -log(risk)
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
-        """Return whether the bets are unlikely to win within `left` more episodes."""
+        """Return whether `left` more episodes are unlikely to win, even at an optimistic mean."""
         counted = [max(one, self.least) for one in differences]
         best = mean_of(counted, 1.0 - CERTAIN).high
         if best < -self.margin:

@@ -44,7 +44,7 @@ def in_fit(seed: int) -> bool:
 
 @dataclass(frozen=True)
 class Model:
-    """Expected move and reward per designed step, shape (cells,); NaN if unknown."""
+    """Expected move and reward of a designed step by cell, shape (cells,); NaN if unknown."""
 
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over all steps except the last one of an episode

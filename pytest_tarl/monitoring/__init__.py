@@ -1,1 +1,1 @@
-"""Watch endless missions for a loss or a change of the world."""
+"""Watch endless missions for a loss of performance or a change of the world."""

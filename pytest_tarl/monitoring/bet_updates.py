@@ -70,7 +70,7 @@ def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
 
 
 def _told(bound: Bound, total: Floats) -> Truths:
-    """Return which missions count for a bound, in the shape of the totals."""
+    """Return which missions count for a bound, as booleans in the shape of the totals."""
     testable = e_process.testable(float(bound.share(bound.least)))
     told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
     return told

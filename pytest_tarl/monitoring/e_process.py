@@ -19,7 +19,7 @@ SHARES = (0.01, 0.015, 0.023, 0.035, 0.053, 0.08, 0.12, 0.18, 0.27, 0.41, 0.62, 
 
 
 def factors(bound: float, observed: NDArray[np.float64]) -> Floats:
-    """Return each bet's factor, shape (missions, bets), for observations in [0, 1]."""
+    """Return each bet's factor, shape (missions, bets), for observations in [0, 1], (missions,)."""
     lost: Floats = (bound - observed) / (1.0 - bound)
     return 1.0 + np.array(SHARES) * lost[:, None]
 

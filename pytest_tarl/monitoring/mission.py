@@ -71,7 +71,7 @@ class Mission(NamedTuple):
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return the progress `begun` with new counts."""
+    """Return the progress `begun` with new counts, moved to the record `last` if given."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted

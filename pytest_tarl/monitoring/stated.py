@@ -1,4 +1,4 @@
-"""The bounds of a recording: success rate and mean reward."""
+"""The bounds of a recording: least success rate and least mean reward."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ _UNREADABLE = (
 
 
 def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: str) -> None:
-    """Write the state atomically. Raise MonitorError on failure."""
+    """Write the state and the recording's hash `fixture` atomically. Raise MonitorError."""
     columns = _columns(monitor)
     header: dict[str, Any] = {
         "kind": KIND,

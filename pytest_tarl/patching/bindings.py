@@ -90,7 +90,7 @@ def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant],
 
 
 def _read_at(place: ast.AST) -> Iterator[ast.expr]:
-    """Yield the names, attributes and items that a statement's header reads."""
+    """Yield the names, attributes and items that a statement (or its header) reads."""
     waiting = [place]
     while waiting:
         node = waiting.pop()
@@ -107,7 +107,7 @@ def _has_name(source: Document, place: ast.AST, name: str) -> bool:
 
 
 def _has_attribute(source: Document, place: ast.AST, chain: tuple[str, ...]) -> bool:
-    """Return whether an attribute exists from the start; assumed unless of `self`."""
+    """Return whether an attribute exists from the start; assumed for all objects but `self`."""
     method = source.method(place)
     if method is None or len(chain) < 2 or chain[0] != method[2]:
         return True
@@ -140,7 +140,7 @@ def _bindings(node: ast.AST) -> Iterator[Binding]:
 
 
 def _pairs(node: ast.stmt, target: ast.expr, value: ast.expr) -> Iterator[Binding]:
-    """Yield the bindings of an assignment, with tuples paired."""
+    """Yield the bindings of an assignment; tuples of equal length are paired."""
     if isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
         if len(target.elts) == len(value.elts):
             for left, right in zip(target.elts, value.elts, strict=True):

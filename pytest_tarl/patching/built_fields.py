@@ -47,7 +47,7 @@ def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, 
 
 
 def _published(statement: ast.stmt) -> ast.expr | None:
-    """Return the message that a statement publishes, if it does nothing else."""
+    """Return the name or attribute that a statement publishes, else None."""
     call = statement.value if isinstance(statement, ast.Expr) else None
     if not isinstance(call, ast.Call) or len(call.args) != 1 or call.keywords:
         return None
@@ -58,7 +58,7 @@ def _published(statement: ast.stmt) -> ast.expr | None:
 def _writes(
     function: ast.AST, message: str, statement: ast.stmt
 ) -> dict[str, list[ast.Assign | ast.AugAssign]]:
-    """Map each field of a message to the statements that write it."""
+    """Map each field of a message to the statements before `statement` that write it."""
     found: dict[str, list[ast.Assign | ast.AugAssign]] = {}
     for node in ast.walk(function):
         if not isinstance(node, ast.Assign | ast.AugAssign) or node.lineno >= statement.lineno:

@@ -34,7 +34,7 @@ class Hunk:
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """Replace the lines `old` from line `start` by `new`."""
+    """Replace the lines `old` from line `start` (counted from 0) by `new`."""
 
     start: int
     old: Lines
@@ -71,7 +71,7 @@ class FilePatch:
         return FilePatch(self.name, self.after, self.before, tuple(turned))
 
     def exact(self, content: bytes) -> bytes | None:
-        """Return the patched content, or None for another blob id."""
+        """Return the patched content, or None if a blob id does not match."""
         if not identical(content, self.before):
             return None
         lines, result, at = split_lines(content), list[bytes](), 0
@@ -115,7 +115,7 @@ def _replacements(hunk: Hunk) -> Iterator[Replacement]:
 
 
 def _place(hunk: Hunk, lines: Sequence[bytes], least: int, likely: int) -> int | None:
-    """Return the line nearest to `likely` where the hunk matches."""
+    """Return the line from `least` on, nearest to `likely`, where the hunk matches; else None."""
     old = list(hunk.old)
     fits = [at for at in range(least, len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     return min(fits, key=lambda at: abs(at - likely), default=None)

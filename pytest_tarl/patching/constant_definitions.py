@@ -165,7 +165,7 @@ def _converted(node: ast.expr | None) -> ast.expr | None:
 
 
 def package_files(root: Path, *nodes: Path) -> dict[str, str]:
-    """Return path → text of the node packages' configuration files."""
+    """Return path (relative to `root`) → text of the node packages' configuration files."""
     found: dict[str, str] = {}
     for top in dict.fromkeys(_package(root, node) for node in nodes):
         found |= _files_in(top, root)
@@ -179,7 +179,7 @@ def _package(root: Path, node: Path) -> Path:
 
 
 def _files_in(top: Path, root: Path) -> dict[str, str]:
-    """Return path → text of a folder's configuration files."""
+    """Return path (relative to `root`) → text of at most `_MOST_FILES` configuration files."""
     found: dict[str, str] = {}
     for path in sorted(top.rglob("*")):
         if len(found) >= _MOST_FILES:
@@ -227,7 +227,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
-    """Say where a launch file computes a parameter without a changeable number."""
+    """Say where a launch file computes a parameter without a changeable number, else ""."""
     key = key_of(name)
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None

@@ -36,7 +36,7 @@ def strings(nodes: Iterable[ast.AST]) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters from `start` to `end` by `text`."""
+    """Replace the characters from `start` to `end` by `text`, with line feeds as line endings."""
 
     start: int
     end: int
@@ -102,7 +102,7 @@ class Document:
         return self.line_starts[min([node.lineno, *(each.lineno for each in decorators)]) - 1]
 
     def line_end(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset of the end of a node's last line."""
+        """Return the offset of the end of a node's last line, before the line ending."""
         match = _NEWLINE.search(self.text, self.end(node))
         return match.start() if match else len(self.text)
 
@@ -185,7 +185,7 @@ class Document:
         return self.line_starts[line - 1] + column - 1 if 0 < line <= len(self.line_starts) else -1
 
     def offset(self, line: int, byte: int) -> int:
-        """Return the character offset of a syntax tree position in UTF-8 bytes."""
+        """Return the character offset of a position whose column counts UTF-8 bytes."""
         start = self.line_starts[line - 1]
         if self.text.isascii():
             return start + byte

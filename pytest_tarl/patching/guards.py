@@ -25,7 +25,7 @@ class Reading:
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python code; "" if it always holds."""
+    """Return a guard as Python ("" if it always holds); `readings` maps sensors to expressions."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):

@@ -40,7 +40,7 @@ def _takes_positional(source: Document, call: ast.Call, argument: ast.AST) -> bo
 
 
 def _takes_integer(source: Document, target: ast.expr) -> bool:
-    """Return whether a target is an integer field of a new message."""
+    """Return whether a target is an integer field of a message created in this file."""
     fields: list[str] = []
     while isinstance(target, ast.Attribute | ast.Subscript):
         if isinstance(target, ast.Attribute):
@@ -74,7 +74,7 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of a message type, or ""."""
+    """Return the ROS name of a message type; "" if it is not imported."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 

@@ -66,7 +66,7 @@ def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
 
 
 def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
-    """Undo `combined`; return the original text or None."""
+    """Undo `combined`; return the original text, or None if a replacement is missing."""
     lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
     for one in _in_order(wanted):
         start = one.start + shift

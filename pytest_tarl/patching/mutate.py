@@ -132,7 +132,7 @@ def redefinition(mutation: Mutation) -> float | int | bool:
 
 
 def form_values(mutation: Mutation) -> dict[str, float]:
-    """Return the parameters of a structural mutation."""
+    """Return a structural mutation's parameters, the searched one scaled by its value."""
     if mutation.form is None:
         return {}
     values = dict(mutation.form.defaults)

@@ -163,7 +163,7 @@ class Conditions:
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the code of a sensor's value at a place. Raise RepairError."""
+        """Return the code of a sensor's value, 0 before the first message. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(

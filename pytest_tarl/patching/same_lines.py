@@ -13,7 +13,7 @@ Imports = dict[
 
 
 def agreed(one: Replacement, other: Replacement) -> Replacement | None:
-    """Return one replacement with the effect of both, or None."""
+    """Return one replacement with the effect of both, or None if they conflict."""
     if one.start != other.start or one.old != other.old:
         return None
     for wide, narrow in ((one, other), (other, one)):

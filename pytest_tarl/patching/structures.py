@@ -284,7 +284,7 @@ def _short(statement: ast.stmt, node: ast.expr) -> str:
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return left side, operator and right side of a comparison."""
+    """Return the sides of a comparison and its operator; other code gets the operator ""."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

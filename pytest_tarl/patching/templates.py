@@ -44,7 +44,7 @@ SCALES = (  # units of a parameter's default
     "larger",  # the larger of the value's usual sizes in the designed and in the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
     "usual",  # the sensor's usual size in the drifted world
-    "ratio",  # usual size of the value divided by that of the sensor, both in the drifted world
+    "ratio",  # `larger` divided by the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
 )
 FIXED = "designed"  # the search does not change parameters with this scale

@@ -170,7 +170,7 @@ class Bus:
         return list(self._topics.values())
 
     def publish_from(self, publication: Publication, place: Topic, message: Any, *, keep: int = 0) -> None:
-        """Publish a copy of a node's message; other nodes get it when this node waits."""
+        """Publish a copy: the world gets it at once, other nodes when this node waits."""
         message = snapshot(message)
         self.published[place.name] += 1
         if self.emitted is not None:
@@ -198,7 +198,7 @@ class Bus:
         self.topic(topic).channels.append(channel)
 
     def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
-        """Pass a message through a topic's channels; call `arrive` with each result."""
+        """Pass a message through a topic's channels; call `arrive` with each result after its delay."""
         now = self._scheduler.time
         arrivals: list[tuple[float, Any]] = [(0.0, message)]
         for channel in place.channels:

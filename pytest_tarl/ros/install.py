@@ -80,7 +80,7 @@ class StandinFinder:
         return not _is_ordinary_package(root) and sibling(root) is None
 
     def _installed_by_workspace(self, root: str) -> ModuleSpec | None:
-        """Find a module that a workspace package would install."""
+        """Find a workspace package's module, unless the search path has one of that name."""
         if not packages() or _is_ordinary_package(root):
             return None
         return sibling(root) or (self._spec(root) if has_configurations(root) else None)

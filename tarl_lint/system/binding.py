@@ -105,7 +105,7 @@ def undetermined(interface: Interface) -> bool:
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
-    """Return the interface for known parameters, with the usual fingerprints."""
+    """Return the interface for known parameters, with the fingerprints of a run without launch."""
     prints = {_ends(one): one.fingerprint for one in every.flows}
     flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
     return replace(decided, flows=tuple(flows))

@@ -32,7 +32,7 @@ PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"), (" (goa
 
 
 def part(api: str, *, sent: bool) -> str:
-    """Return the part of a service that an end is, such as ` (request)`."""
+    """Return the part of a service that an end is, such as ` (request)`; "" for a topic."""
     client = api.startswith(CLIENTS)
     if not client and not api.startswith(_SERVERS):
         return ""

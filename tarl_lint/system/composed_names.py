@@ -62,7 +62,7 @@ def _literal(call: ast.Call) -> frozenset[str] | None:
 def _reached_by_all(
     machine: Interpreter, modules: Sequence[Module], outlines: Mapping[str, Outline], composing: set[str]
 ) -> bool:
-    """Return whether the analysis followed all calls of the functions."""
+    """Return whether the analysis followed all calls of the functions and their callers."""
     entered: dict[str, set[_Place]] = {}
     for frame in machine.frames.values():
         if frame.caller is not None and frame.call_pos is not None:

@@ -49,7 +49,7 @@ def _of(argument: str, text: str) -> Qos | None:
 
 
 def _stated(value: str, *, declared: bool) -> Qos | None:
-    """Return the profile of an expression, or of a depth if `declared`."""
+    """Return an expression's profile; with `declared`, it may be a declaration's depth."""
     if "SensorDataQoS" in value or "qos_profile_sensor_data" in value:
         return _changed(_SENSORS, value)
     if "SystemDefaultsQoS" in value or "ServicesQoS" in value or "from_rmw" in value:

@@ -79,7 +79,7 @@ def _used(package: Package, workspace: Workspace) -> frozenset[str] | None:
 
 @cache
 def _names(folder: Path) -> tuple[frozenset[str], frozenset[str]] | None:
-    """Return the capitalised names and included packages of C++ files."""
+    """Return names and included packages of C++ files; None if they are too many or unreadable."""
     names: set[str] = set()
     packages: set[str] = set()
     files = sorted(path for path in folder.rglob("*") if path.suffix in _SUFFIXES and path.is_file())

@@ -158,7 +158,7 @@ def _without_cycles(every: Iterable[str], edges: list[tuple[str, str]]) -> list[
 
 
 def _untangled(columns: list[list[str]], edges: list[tuple[str, str]]) -> list[list[str]]:
-    """Sort each column by the mean height of the predecessors (Sugiyama et al. 1981)."""
+    """Return the columns, each sorted by the predecessors' mean height (Sugiyama et al. 1981)."""
     before: dict[str, list[str]] = {}
     for one, other in edges:
         before.setdefault(other, []).append(one)

@@ -79,7 +79,7 @@ def _of_argument(text: str, instance: Instance) -> list[Endpoint] | None:
 
 
 def _entries(path: Any, workspace: Workspace) -> list[Any] | None:
-    """Return the entries of a bridge's YAML file; None if the file is unknown."""
+    """Return the entries of a bridge's YAML file; [] without a file, None if it is unknown."""
     if path is None or path == "":
         return []
     if not isinstance(path, str) or "$(" in path or not Path(path).is_relative_to(workspace.root):

@@ -103,7 +103,7 @@ _TRANSPORTED: Final[Mapping[str, str]] = {":": IMAGE, "@": CAMERA}
 
 
 def stated(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
-    """Return the topics of a known program with parameters `values`."""
+    """Return the topics of a program with parameters `values`; empty if it is unknown."""
     joints = _of_joints(instance, values)
     if joints is not None:
         return joints

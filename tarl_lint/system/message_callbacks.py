@@ -23,7 +23,7 @@ HANDLE: Final = "@"  # end of a goal handle's type; its `request` is the goal
 
 
 def received(tree: ast.Module, types: ImportedTypes) -> dict[str, set[tuple[str, int]]]:
-    """Return function name → the positions and types of received objects."""
+    """Return function name → (type or "", position) of received objects."""
     found: dict[str, set[tuple[str, int]]] = {}
     for call in _calls(tree):
         for callback, kinds in _registered(call, types):

@@ -242,7 +242,7 @@ class Chain:
 
     @property
     def kind(self) -> Kind | Literal["not read"]:
-        """Return `explicit`, `implicit`, or `not read` if a node was not read."""
+        """Return `explicit` if all hops are, `not read` if a node is not, else `implicit`."""
         kinds = {hop.kind for hop in self.hops}
         return "not read" if "not read" in kinds else "implicit" if "implicit" in kinds else "explicit"
 

@@ -107,7 +107,7 @@ def _squeezed(name: str) -> str:
 
 
 def _within(few: list[str], many: list[str]) -> bool:
-    """Return whether a namespace contains all parts of another one, in order."""
+    """Return whether `many` contains all parts of `few` in the same order."""
     rest = iter(many)
     return all(part in rest for part in few)
 

@@ -262,7 +262,7 @@ def _changes(function: ast.AST) -> Iterator[tuple[ast.expr, ast.expr | None]]:
 
 
 def _reset(value: ast.expr | None) -> bool:
-    """Return whether a value is a constant or a new object without arguments."""
+    """Return whether a value is constant, a new object without arguments, or a change in place."""
     if isinstance(value, ast.Call):
         return not value.args and not value.keywords and isinstance(value.func, ast.Name)
     return value is None or isinstance(value, ast.Constant)

@@ -23,7 +23,7 @@ def rows(topics: Collection[str], outline: Outline) -> Iterator[list[ast.expr]]:
 
 
 def _rows(node: ast.AST) -> Iterator[list[ast.expr]]:
-    """Yield the elements of a list, a call or a mapping."""
+    """Yield a sequence's elements, a call's arguments, or a mapping's entries and values."""
     if isinstance(node, ast.Tuple | ast.List):
         yield node.elts
     elif isinstance(node, ast.Call):

@@ -97,7 +97,7 @@ def _system(
 
 
 def _nothing(system: System, origin: str, target: str) -> str:
-    """Return the message that there is no chain between the topics."""
+    """Return the message that there is no chain; it names topics that do not exist."""
     if not (origin or target):
         return "No flows across nodes."
     known = {name for one in system.instances for role in _ROLES for name, _ in one.named(role)}

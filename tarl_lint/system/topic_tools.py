@@ -49,7 +49,7 @@ _CHOOSING: Final[Mapping[str, str]] = {
 
 
 def passed_on(instance: Instance, values: Mapping[str, Any], *, ros2: bool) -> Seen:
-    """Return the topics of a program of topic_tools with parameters `values`."""
+    """Return the topics of a program of topic_tools (parameters `values`); empty for others."""
     node = instance.node
     program = _program(instance, ros2=ros2)
     if not program:

@@ -161,7 +161,7 @@ class _Build:
             self.compiled.add(_after(words, "EXECUTABLE"))
 
     def _known(self, command: Command, words: Sequence[str]) -> tuple[str, ...]:
-        """Return the words without unknown variables, and record a problem for each."""
+        """Return the words without unknown variables; record a problem for each other word."""
         unknown = [one for one in words if _names_unknown(one)]
         for one in unknown:
             self.problems.append(
@@ -194,7 +194,7 @@ class _Build:
 
 
 def _names_unknown(word: str) -> bool:
-    """Return whether a word has a variable without a known value."""
+    """Return whether a word has an unknown variable; install folders do not count."""
     return any(
         "DESTINATION" not in one and not one.startswith("CMAKE_INSTALL_") for one in _VARIABLE.findall(word)
     )
@@ -215,7 +215,7 @@ def _after(words: Sequence[str], keyword: str, default: str = "") -> str:
 
 
 def renamed(command: Command) -> dict[str, str]:
-    """Return a target and the file name that a command gives it."""
+    """Return target → the file name that a command gives it; empty without one."""
     words = command.words
     if command.name != "set_target_properties" or "OUTPUT_NAME" not in words[:-1]:
         return {}

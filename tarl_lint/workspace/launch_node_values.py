@@ -43,7 +43,7 @@ def setting(name: str, value: Any, context: Context) -> Setting | None:
 
 
 def _listed_values(value: list[Any] | tuple[Any, ...], context: Context) -> str:
-    """Return a list as YAML with the types of launch_ros."""
+    """Return a list as YAML with the types of launch_ros; "" for parts of one string."""
     if all(isinstance(one, bool | int | float) for one in value):
         real = any(isinstance(one, float) for one in value)
         return repr([float(one) if real and not isinstance(one, bool) else one for one in value])

@@ -269,7 +269,7 @@ def _as_bool(name: Any) -> Choice:
 
 
 def _rewritten(source_file: Any, param_rewrites: Any = None, **_: Any) -> Any:
-    """Return a parameter file of Navigation 2, if nothing is replaced in it."""
+    """Return a parameter file of Navigation 2; Unknown if values in it are replaced."""
     return source_file if not param_rewrites else Unknown(0, "RewrittenYaml")
 
 

@@ -29,7 +29,7 @@ class Manifest:
 
 
 def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
-    """Return the manifest in a folder, by default with the folder's name."""
+    """Return a folder's manifest and its problems; without a name, it gets the folder's."""
     path = folder / "package.xml"
     root, problem = _root(path)
     if root is None:
@@ -71,7 +71,7 @@ def _root(path: Path) -> tuple[ElementTree.Element | None, str]:
 
 
 def _kind(folder: Path, stated: str, depends: tuple[str, ...]) -> Kind:
-    """Return the stated build type, or a guess."""
+    """Return the build type: as stated, or guessed from dependencies and files."""
     for kind in _BUILD_TYPES:
         if stated == kind:
             return kind

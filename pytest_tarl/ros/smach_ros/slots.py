@@ -27,7 +27,7 @@ def build(
     slots: Sequence[str],
     callback: tuple[Callable[..., Any] | None, Sequence[Any], Mapping[str, Any]],
 ) -> Any:
-    """Return the message for the slots; a callback may replace it."""
+    """Return `ud[key]` or a copy of `message`, with slots from `ud`; a callback may replace it."""
     made = ud[key] if key is not None else deepcopy(message)
     for slot in slots:
         setattr(made, slot, ud[slot])

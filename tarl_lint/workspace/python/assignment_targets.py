@@ -26,7 +26,7 @@ def bind(run: Evaluation, target: ast.expr, value: Any, names: Scope) -> None:
 
 
 def _taken(value: Any, target: ast.Tuple | ast.List) -> list[Any] | None:
-    """Return the elements of an unpacked value, as many as targets."""
+    """Return the elements of an unpacked value; an endless iterator gives one per target."""
     if isinstance(value, Stream) and value.endless:
         return [next(value.values, unknown(target)) for _ in target.elts]
     return elements_if_known(value)

@@ -277,7 +277,7 @@ MAYBE: Final = Unknown(0, "a comparison")
 
 
 def constant(text: str, names: Mapping[str, Any] | None = None) -> Any:
-    """Return an expression's value, or `Unknown`. Raises ValueError."""
+    """Return an expression's value, or `Unknown`. Raises ValueError for invalid syntax."""
     try:
         tree = ast.parse(text.strip(), mode="eval")
         return Evaluator({}).value(tree.body, Scope(dict(names or {})))
