@@ -53,7 +53,7 @@ class Outcome:
     failure: str = field(default="", compare=False)
 
     def acts_like(self, other: Outcome) -> bool:
-        """Return whether two episodes of one seed are equal, also in the messages of the nodes as far as known."""
+        """Return whether two episodes of one seed are equal, also in the nodes' known messages."""
         return self == other and self.outputs == other.outputs
 
 
@@ -149,7 +149,7 @@ class Acceptance:
 
 
 def risk_of(alpha: float, before: int) -> float:
-    """Return the risk that a test may spend after `before` earlier tests. The risks of all tests sum to at most α."""
+    """Return the risk of a test after `before` earlier tests; all risks sum to at most α."""
     return alpha * SHARE * (1.0 - SHARE) ** before
 
 
@@ -245,7 +245,7 @@ class _World:
         return self.bet.wealth(differences) >= -log(self.risk)
 
     def _hopeless(self, outcomes: Sequence[Outcome], differences: Sequence[float], left: int) -> Reason:
-        """Return the reason why the test can no longer accept the candidate, or "" if acceptance is still possible."""
+        """Return why the test can no longer accept the candidate, or "" if it still can."""
         if self._failed(outcomes) > self._numbers()[-1]:
             return self._often
         if self.bet is None or not self.bet.hopeless(differences, left, self.risk):

@@ -1,4 +1,4 @@
-"""Adjust the best constant of a sweep: in each round, try factors between its best factor and the neighbouring ones."""
+"""Adjust the best constant of a sweep, by factors between its best factor and the neighbours."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Adjusting:
                 return
 
     def _hopeful(self, key: tuple[Unit, Guard]) -> float:
-        """Return the gain of a unit, reduced for each refinement without progress, so that other units get a turn."""
+        """Return the gain of a unit, reduced for each refinement without progress."""
         return self.search.gains.most(key) * GIVES_WAY ** self._idle[key]
 
     def _open(self) -> list[tuple[Unit, Guard]]:
@@ -109,12 +109,12 @@ class Adjusting:
         ]
 
     def _in_a_wide_bracket(self, key: tuple[Unit, Guard]) -> bool:
-        """Return whether a named constant's gain has a sharp peak and there is room to try factors beside the peak."""
+        """Return whether a named constant's gain has a sharp peak with room beside it."""
         named = kind(key[0]) is Oddness.NAMED and not self.search.proposed
         return named and bracket(self.search.gains.of(*key)) >= WIDE
 
     def amid(self, guard: Guard) -> Iterator[Candidate]:
-        """For each constant, try the value between a step that is too little and a larger step that is too much.
+        """For each constant, try a value between a too small and a too large step.
 
         A step is too little if it earns about as much as the old value. It is too much if it clearly loses reward.
         """
@@ -170,5 +170,5 @@ class Adjusting:
 
 
 def _most(unit: Unit) -> int:
-    """Return how many refining runs a unit may have: `REFINED`, or half of that for an offset of a literal zero."""
+    """Return how many refining runs a unit may have: `REFINED`; half for an offset of zero."""
     return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED

@@ -1,4 +1,4 @@
-"""Adapter for any optimiser with an ask/tell interface: ask it for factors, then tell it the gain of these factors."""
+"""Adapter for any optimiser with an ask/tell interface: ask for factors, tell their gain."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MOST_AT_ONCE = 1000
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A use of a constant, as passed to the optimiser; `value` is None if the constant is known only at run time."""
+    """A use of a constant for the optimiser; `value` is None if known only at run time."""
 
     path: str
     line: int
@@ -56,7 +56,7 @@ class Optimiser(Protocol):
         """
 
     def tell(self, factors: Sequence[float], gain: float) -> None:
-        """Receive the gain of these factors: the reward with them minus that of the unmutated run of the same seed."""
+        """Receive the gain of these factors over the unmutated run of the same seed."""
 
 
 Factory = Callable[[Sequence[Constant], int], Optimiser]

@@ -309,7 +309,7 @@ class Attempts:
         return bool(near)
 
     def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
-        """Return the index of the pair on whose seed a change ran first; without a run, that of the present turn."""
+        """Return the index of the pair on whose seed a change ran first, else of the present turn."""
         return self._ran_on.get((unit, guard, factor), self.pair)
 
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
@@ -319,7 +319,7 @@ class Attempts:
         self.trials.expect((one, seed) for one in candidates if one.mutations and one not in self._tried)
 
     def _near(self, candidate: Candidate, pair: int) -> bool | None:
-        """Run a candidate once. Return whether it reached the goal, or None if it cannot be written into the source."""
+        """Run a candidate once; return whether it reached the goal, or None if it cannot be written."""
         try:
             seed = self.goal.pairs[pair].seed
             return self.trials.reaches(candidate, seed, self.goal)
@@ -353,7 +353,7 @@ class Attempts:
 
 
 def easy(goal: Goal) -> Sequence[int]:
-    """Return the indices of the easy pairs: those that lost least. If the drift's size varies, return all indices.
+    """Return the indices of the pairs that lost least; all indices if the drift's size varies.
 
     An easy pair lost at least `LOST`, because a gain on a pair that lost less cannot be told from noise. If the drift's
     size varies, the pairs are ordered so that they span the range of sizes.

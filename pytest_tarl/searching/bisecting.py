@@ -1,4 +1,4 @@
-"""If a value that is too small and a value that restores the reward are far apart, bisect between them.
+"""Bisect between a value that is too small and a distant value that restores the reward.
 
 For example, a robot keeps free the 0.3 m from its lidar to its bumper; when it carries a ladder, it needs 1.1 m.
 Multiplying by 2.2 is too little. With the next larger step, 6.7 m, the robot stops for anything in the corridor. Values
@@ -62,7 +62,7 @@ def bisected(
 
 
 def on_values(unit: Unit, factor: float) -> tuple[Unit, float | None]:
-    """Return the unit without its chart, and the factor on its value (None for a boolean, a zero or a sign change)."""
+    """Return the unit without its chart, and the factor on its value (None for booleans, 0, sign changes)."""
     value = unit.operands[0].value
     if isinstance(value, bool) or value == 0:
         return unit, None

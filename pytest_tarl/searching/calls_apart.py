@@ -27,7 +27,7 @@ def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
 
 
 def _called(operand: Operand) -> str:
-    """Return the name of the function or method that an operand calls, or "" if it is not a call."""
+    """Return the name of the function or method that an operand calls, or ""."""
     try:
         node = ast.parse(operand.code, mode="eval").body
     except SyntaxError:

@@ -32,7 +32,7 @@ Bins = tuple[int, int]  # first and last bin, both included
 
 @dataclass(frozen=True)
 class Evidence:
-    """Data from which guards are derived: samples of both worlds, the region of change, and the change in each cell."""
+    """Data for guards: samples of both worlds, the region of change, and each cell's change."""
 
     sensors: Sequence[Sensor]
     offline: Sample
@@ -145,7 +145,7 @@ def _within(conjunct: Conjunct, index: int) -> bool:
 
 
 def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
-    """Return the bins that the cells span on a sensor. For an angle, return the shortest arc, which may wrap."""
+    """Return the bins that the cells span on a sensor; for an angle, the shortest arc."""
     chosen = sorted({cell[i] for cell in cells})
     if not chosen:
         return None
@@ -157,7 +157,7 @@ def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
 
 
 def _steepest(evidence: Evidence, i: int) -> Bins | None:
-    """Return the interval of bins with the largest sum of `shares`, by Kadane's algorithm; it may wrap for angles."""
+    """Return the interval of bins with the largest sum of `shares`; it may wrap for angles."""
     by_bin: dict[int, float] = {}
     for cell, value in evidence.shares().items():
         by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value
@@ -187,7 +187,7 @@ def _values(evidence: Evidence) -> Iterator[Guard]:
 
 
 def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:
-    """Yield conditions on one and on two sensors, but only those that can be false and that a node can check."""
+    """Yield conditions on one and two sensors that can be false and that a node can check."""
     conjuncts = []
     for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
         seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
@@ -205,7 +205,7 @@ def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
 
 
 def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
-    """Return the interval of the bins. An end of the interval is unbounded if no bin beyond it was ever visited."""
+    """Return the interval of the bins, unbounded at an end without visited bins beyond it."""
     low, high = sensor.interval(*bins)
     if sensor.numeric and not sensor.angle:
         low = -np.inf if bins[0] <= min(seen) else low

@@ -71,5 +71,5 @@ def _towards(gains: Mapping[float, float], factor: float) -> bool:
 
 
 def _is_local(unit: Unit) -> bool:
-    """Return whether a unit has the name of a local variable. Its value is then computed from other constants."""
+    """Return whether a unit is a local variable, whose value comes from other constants."""
     return unit.operands[0].code.islower() and unit.operands[0].code.isidentifier()

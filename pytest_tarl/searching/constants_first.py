@@ -35,7 +35,7 @@ class Scaled:
     statements: tuple[Lines, ...]
 
     def place(self, unit: Unit) -> int | None:
-        """Return the index of the statement that contains all constants of a unit, or None if no statement does."""
+        """Return the index of the statement with all constants of a unit, or None."""
         spans = [operand.span for operand in unit.operands]
         return next(
             (

@@ -96,5 +96,5 @@ def _outcome(search: Search, guard: Guard, unit: Unit, factor: float, pair: int)
 
 
 def _reason(search: Search, outcome: Outcome | None) -> str:
-    """Return the reason why a mission failed, or "" if the mission did not fail or the reason is unknown."""
+    """Return why a mission failed, or "" if it did not or the reason is unknown."""
     return outcome.failure if outcome is not None and search.goal.lost(outcome) else ""

@@ -1,4 +1,4 @@
-"""The first steps of a sweep under a guard: they are large enough to show whether a constant matters."""
+"""The first steps of a sweep under a guard, large enough to show whether a constant matters."""
 
 from __future__ import annotations
 
@@ -242,7 +242,7 @@ class FirstSteps:
             yield from tries.adjusting.refine(tries.pair)
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
-        """Change a constant at only one of its uses: if it changes everywhere, the effects may cancel each other.
+        """Change a constant at only one of its uses, because effects of several may cancel.
 
         Each use runs on the seed on which the constant was changed everywhere. This shows whether both changes have the
         same effect.
@@ -307,7 +307,7 @@ class FirstSteps:
             before = steps
 
     def _few(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the constants that clearly lose with all steps so far: the named ones, or else the others if few."""
+        """Return the constants that lose with all steps: the named ones, or else the others if few."""
         lost = self.attempts.gains.clearly_lost(guard, among, FINER)
         lost = [unit for unit in lost if unit.chart is None and kind(unit) < Oddness.OFFSET]
         return named(lost) or (lost if len(lost) <= FEW else [])

@@ -1,4 +1,4 @@
-"""Combined repairs by greedy forward selection: start with the best unit and add units until the goal is reached.
+"""Combined repairs by greedy forward selection: add units to the best one up to the goal.
 
 A part of a combination is a unit with its factor. Units are chosen by the gain that each has alone, as in matching
 pursuit. After each step, the factors of all parts are balanced: each one is adjusted to the others. Parts that are not
@@ -139,7 +139,7 @@ class ForwardSelection:
     def unions(
         self, parts: Sequence[tuple[Unit, float]], guard: Guard, hidden: Sequence[Unit] = ()
     ) -> Iterator[Candidate]:
-        """Combine the first part with each other part, add a third part to the best pair, and balance the best result.
+        """Combine the first part with each other part, add a third to the best pair, and balance it.
 
         `hidden` are the units that never changed a reward alone.
         """
@@ -167,7 +167,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units that had no effect alone to a good pair: missions may now last until these units matter."""
+        """Add units without an effect alone to a good pair, since missions may now last longer."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():
@@ -195,7 +195,7 @@ class ForwardSelection:
             yield from self._balanced(joint, gain)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
-        """Run a combination once and yield it if it is confirmed. Return its gain, or None if it cannot run."""
+        """Run a combination once and yield it if confirmed; return its gain, or None if it cannot run."""
         candidate = joint.candidate(self.mutate)
         try:
             near = self._reached(candidate)
@@ -293,7 +293,7 @@ class ForwardSelection:
             yield candidate
 
     def sharper(self, unit: Unit, factor: float, guard: Guard, steps: Sequence[float] = SHARP_STEPS) -> float:
-        """Return an adjusted factor for a single unit that gains much; adjust it on the seeds where it earns least.
+        """Return a good single unit's factor, adjusted on the seeds where it earns least.
 
         A failed mission counts with its reward here, although it does not in a combination: near a narrow range of good
         values, some missions fail.
@@ -316,7 +316,7 @@ class ForwardSelection:
         return better
 
     def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:
-        """Yield combinations with one more part. In the first turn, the part has the better of its two near factors."""
+        """Yield combinations with one more part, which first has the better of its near factors."""
         taken = {unit for unit, _ in base.parts}
         for unit in self.units:
             ranked = sorted(NEAR, key=lambda factor: self._progress(unit, factor, base.guard), reverse=True)

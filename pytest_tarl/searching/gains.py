@@ -1,4 +1,4 @@
-"""A table of the gains of single units by guard and factor, and the rankings that the sweep derives from it."""
+"""A table of the gains of single units by guard and factor, and rankings from it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Gains:
     def enter(
         self, key: Key, factor: float, gain: float, moved: bool | None = None, hollow: bool = False
     ) -> None:
-        """Store the gain of a factor and whether the factor changed an episode (by default: whether the gain is not 0).
+        """Store the gain of a factor and whether it changed an episode (by default: gain not 0).
 
         A `hollow` gain comes from missions that only fail sooner. Such a gain may be refined, but does not count as
         progress.
@@ -131,7 +131,7 @@ class Gains:
         ]
 
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units without duplicates: units that use the same constant as an earlier unit to the same effect.
+        """Return the units without those that use an earlier unit's constant to the same effect.
 
         For example, a constant that is passed to a function is used both in the call and in the function. Two units
         count as equal if they share a definition, at least two factors were tried on both, and the gains of all these

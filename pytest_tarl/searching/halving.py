@@ -1,4 +1,4 @@
-"""Sequential halving: run every arm (an operand with a factor), and drop half of the arms after each round.
+"""Sequential halving: run all arms (an operand with a factor), and drop half in each round.
 
 In each round, all arms run on the same seeds. The search also drops arms that gain nothing, and arms that are
 significantly worse than the best one on common seeds. It refines the best arms. References: Karnin, Koren & Somekh
@@ -24,7 +24,7 @@ SLACK = 0.1  # minimum gain that counts, as a share of the loss
 
 
 class Halving:
-    """Sequential halving with a race on common seeds and with refinement of the best arms. Each guard has its turn."""
+    """Sequential halving with a race on common seeds and refinement, one guard after the other."""
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class Halving:
                     yield candidate
 
     def _kept(self, arms: Sequence[Arm]) -> list[Arm]:
-        """Return the better half of the arms that gain and are not behind, and new arms beside the best ones."""
+        """Return the better half of the gaining arms, and new arms beside the best ones."""
         gaining = [arm for arm in self.race.abreast(arms) if self.race.gain(arm) > self.slack]
         kept = gaining[: (len(gaining) + 1) // 2]
         return list(dict.fromkeys([*kept, *(one for arm in kept[:REFINED] for one in self.race.around(arm))]))
@@ -85,7 +85,7 @@ class Halving:
 
 
 def arm_effects(race: Race) -> dict[str, list[OperandEffect]]:
-    """For each site, return the best gain of each operand. On ties, return the value that was tried first."""
+    """Return each operand's best gain for each site; on ties, of the value tried first."""
     best: dict[Operand, OperandEffect] = {}
     for arm in race.gains:
         for mutation in arm.unit.mutations(race.mutate, arm.factor):

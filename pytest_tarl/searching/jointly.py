@@ -179,7 +179,7 @@ class Jointly:
         return Joint(tuple((unit, float(f"{step:.3g}")) for unit, step in joint.parts), joint.guard)
 
     def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
-        """Run a combination; return its gain (as a share of the wanted gain) minus the deviation of its missions.
+        """Run a combination; return its share of the wanted gain minus its missions' deviation.
 
         A result on one seed may be luck. A combination that would be the best so far therefore also runs on a second
         seed, and its gain is the mean of both seeds.
@@ -212,7 +212,7 @@ class Jointly:
         return tuple(float(one) for one in proposals[int(np.argmax(gains))])
 
     def _proposals(self, starts: Floats) -> Floats:
-        """Move one to `CHANGED` coordinates of the starts; return shape (m, k). Steps below `SMALL` are set to 0."""
+        """Move up to `CHANGED` coordinates of the starts, shape (m, k); 0 replaces steps below `SMALL`."""
         draw, size = self.generator, (PROPOSALS, starts.shape[1])
         many = draw.integers(1, CHANGED + 1, PROPOSALS)
         ranks = (draw.random(size) ** (1.0 / self._often)).argsort(axis=1)[:, ::-1].argsort(axis=1)

@@ -1,4 +1,4 @@
-"""If no single value of a constant is better than the old one, let it follow a quantity that varies too much.
+"""Let a constant follow a varying quantity, if no single value is better than the old one.
 
 For example, a stage light has the right brightness for actors at its mark. If the actors walk over the whole stage, any
 other fixed brightness is worse on average: half of the places need more light and half need less. A brightness that is

@@ -28,7 +28,7 @@ STEPS = 2  # maximum number of steps in one direction while the lost mission sta
 def better_factor(
     unit: Unit, candidate: Candidate, factor: float, tried: Collection[float], mutate: Mutate, trials: Trials
 ) -> float | None:
-    """Return a factor between `factor` and one of its neighbours if it earns more in a lost mission, else None.
+    """Return a factor beside `factor` that earns more in a lost mission, else None.
 
     On a plateau, the factor may also lie beyond a neighbour. `candidate` is the unit with `factor`, and `tried` are the
     factors that were tried. Raise BudgetSpentError.

@@ -20,7 +20,7 @@ MODERATE = 12  # number of episodes after which no further moderate change is tr
 
 
 def extreme(unit: Unit, factor: float) -> bool:
-    """Return whether a change multiplies or divides a constant by at least `LARGE`; False for a constant of 0."""
+    """Return whether a change scales a constant by `LARGE` or more; False for a constant of 0."""
     value = unit.operands[0].value
     return (
         bool(value)

@@ -1,4 +1,4 @@
-"""Keep a change that removes a good part of the loss, and try the other constants together with it.
+"""Keep a change that removes much of the loss, and add other constants to it.
 
 A change may restore the easy missions but not the hard ones, because a second constant is wrong as well. On an easy
 mission nothing more can be gained, so the other constants run on the mission that the change restores least. Constants
@@ -93,7 +93,7 @@ def _hardest(base: Joint, selection: ForwardSelection) -> Pair | None:
 
 
 def _ran(joint: Joint, pair: Pair, selection: ForwardSelection) -> Outcome | None:
-    """Return the outcome of a combination on the seed of a pair, or None if it cannot be written."""
+    """Return a combination's outcome on the seed of a pair, or None if it cannot be written."""
     candidate = joint.candidate(selection.mutate)
     try:
         return selection.trials(candidate, pair.seed) if candidate.mutations else None

@@ -98,7 +98,7 @@ def _may_take(other: Operand, operand: Operand) -> bool:
 
 
 def _moved_by(unit: Unit, offset: float) -> float | None:
-    """Return the step that adds an offset to the constant of a unit, or None if the constant's sign would change."""
+    """Return the step that adds an offset to a unit's constant, or None for a sign change."""
     value = float(unit.operands[0].value or 0.0)
     if value == 0.0:
         return step_to(offset if unit.chart is None else offset / unit.chart.size)
@@ -158,7 +158,7 @@ def kind(unit: Unit) -> Oddness:
 
 
 def _lines_after(unit: Unit, beside: Unit | None) -> float:
-    """Count the lines from `beside` down to the unit: -1 if both share a statement, infinite if the unit is above."""
+    """Count the lines from `beside` down to the unit: -1 in one statement, infinite if above."""
     if beside is None:
         return inf
     one, other = unit.operands[0], beside.operands[0]

@@ -62,7 +62,7 @@ def nearby(tried: Sequence[Key], gains: Gains, least: float) -> list[Key]:
 
 
 def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]]:
-    """Return the constants that matter, except those that are 0, and the inward steps that may be tried on them.
+    """Return the constants that matter, except zeros, and the inward steps to try on them.
 
     If any named constant matters, unnamed constants are left out.
     """
@@ -75,7 +75,7 @@ def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]
 
 
 def among(before: float | None, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
-    """Return the units to try with a step: those on which the smaller step `before` did not reduce the reward."""
+    """Return the units to try with a step: those that the smaller step `before` did not harm."""
     if before is INWARD:
         return [unit for unit in named(units) if unit.chart is None and gains.matters(unit)]
     leading = gains.leading(before, guard, units, -gains.slack)

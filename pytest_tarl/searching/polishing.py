@@ -75,7 +75,7 @@ class _Ascent:
         self._means: dict[Factors, float | None] = {}
 
     def along(self, best: Factors, most: float, at: int, step: float) -> tuple[Factors, float]:
-        """Move one factor up, or else down, while the mean total grows; return the new factors and their mean total."""
+        """Move one factor up, or else down, while the mean total grows; return factors and total."""
         for ratio in (step, 1.0 / step):
             begun = most
             while self.spent < EPISODES and most < self.enough:
@@ -102,7 +102,7 @@ class _Ascent:
         return best, most
 
     def mean(self, factors: Factors, most: float) -> float | None:
-        """Return the mean total. Return None if the factors are rejected or at first earn clearly less than `most`."""
+        """Return the mean total; None if factors are rejected or at first earn clearly below `most`."""
         if factors not in self._means:
             self._means[factors] = self._run(factors, most)
         return self._means[factors]

@@ -250,7 +250,7 @@ class Preferences:
             self._aside.append((other, candidate))
 
     def _promises(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a factor reaches the goal on a pair's seed, or gains so much that another factor may do so."""
+        """Return whether a factor reaches the goal on a pair's seed, or gains nearly enough."""
         if self.search.reaches(unit, factor, guard, pair):
             return True
         gain = self.search.gains.of(unit, guard).get(factor, 0.0)
@@ -345,7 +345,7 @@ class Preferences:
     def _smaller_holding(
         self, unit: Unit, step: float, guard: Guard, pair: int
     ) -> tuple[float, Candidate | None]:
-        """Try a small step. If it earns nearly enough, try the steps beside it. Return the first confirmed one."""
+        """Try a small step and, if it earns nearly enough, its neighbours; return the first confirmed one."""
         if (unit, guard) in self.search.refused:
             return step, None
         candidate = self.search.holding(unit, step, guard, pair)

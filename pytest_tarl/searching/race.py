@@ -76,7 +76,7 @@ class Race:
         return [arm for arm in ranked if not behind(self.gains[arm], self.gains[ranked[0]])]
 
     def around(self, arm: Arm) -> list[Arm]:
-        """Return new arms of the same unit, halfway (on a log scale) to the next smaller and next larger factor."""
+        """Return new arms of the same unit, halfway (in log scale) to the neighbouring factors."""
         tried = sorted(
             one.factor
             for one in self.gains

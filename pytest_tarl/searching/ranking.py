@@ -66,7 +66,7 @@ class Ranking:
         return arm_effects(self.race)
 
     def certainty(self, first: str) -> Certainty | None:
-        """Return how certain it is that the site with this id leads, or None if the site has not run."""
+        """Return the certainty that a site leads, or None if it has not run."""
         arms = {str(site): arm for site, arm in self._best().items()}
         if first not in arms:
             return None
@@ -91,7 +91,7 @@ class Ranking:
         )
 
     def _sweep(self) -> None:
-        """Run all factors of all operands on the first seed. Skip far factors if the near ones change nothing."""
+        """Run all operands on the first seed; skip far factors if near ones change nothing."""
         for at, factor in enumerate((*FACTORS, FLIP)):
             moving = self.units if at < len(NEAR) else [unit for unit in self.units if self._moves(unit)]
             self.race.run([Arm(unit, factor, self.guard) for unit in moving], 1)
@@ -106,7 +106,7 @@ class Ranking:
         )
 
     def _race(self) -> None:
-        """Race the best arms of each site on a few seeds, then race the arms that gain on all seeds."""
+        """Race each site's best arms on a few seeds, then the gaining ones on all."""
         for seeds in (LEAST, SEEDS):
             field = [
                 arm
@@ -117,7 +117,7 @@ class Ranking:
             self.race.run(field, seeds)
 
     def _best(self) -> Mapping[SiteId, Arm]:
-        """Return the best arm of every site. Arms that ran on more seeds win, because one seed may be luck."""
+        """Return the best arm of every site, among those that ran on most seeds."""
         best: dict[SiteId, Arm] = {}
         for arm in self.race.gains:
             site = arm.unit.operands[0].site

@@ -1,4 +1,4 @@
-"""Choose the next factors of one constant: on a log scale, halfway between its best factor and its neighbours."""
+"""Choose a constant's next factors, halfway (in log scale) between the best and its neighbours."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHARP = 0.5  # a peak is sharp if each neighbouring factor gains at most this sh
 
 
 def bracket(by_factor: Mapping[float, float]) -> float:
-    """Return the ratio of the factors on both sides of a sharp peak (see `SHARP`), or 1 if there is none."""
+    """Return the ratio of the factors beside a sharp peak (see `SHARP`), or 1 without one."""
     beside = _beside_peak(by_factor)
     if beside is None:
         return 1.0
@@ -32,13 +32,13 @@ def bracket(by_factor: Mapping[float, float]) -> float:
 
 
 def between_neighbours(by_factor: Mapping[float, float]) -> float:
-    """Return the ratio of the two factors beside the best factor, or 1 if there are not two or nothing gains."""
+    """Return the ratio of the factors beside the best; 1 without two or without a gain."""
     beside = _beside_peak(by_factor)
     return beside[1] / beside[0] if beside is not None else 1.0
 
 
 def _beside_peak(by_factor: Mapping[float, float]) -> tuple[float, float] | None:
-    """Return the two factors beside the best factor, or None if there are not two or the best gains nothing."""
+    """Return the two factors beside the best factor; None without two or without a gain."""
     factor = max(by_factor, key=by_factor.__getitem__)
     below, above = beside(factor, by_factor) if factor > 0.0 else (0.0, inf)
     return (below, above) if below > 0.0 and above < inf and by_factor[factor] > 0.0 else None

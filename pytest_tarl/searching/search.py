@@ -96,7 +96,7 @@ class Goal:
         return max(self.enough_on([pair.seed for pair in self.pairs]) - lost, 0.0)
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
-        """Return whether an episode earns about as much as the episode of the same seed in the designed world."""
+        """Return whether an episode earns about as much as the designed one of its seed."""
         return outcome.total >= self.near - self._less(seed) and not self.lost(outcome)
 
     def lost(self, outcome: Outcome) -> bool:
@@ -104,7 +104,7 @@ class Goal:
         return self.passing and not outcome.passed
 
     def feigned(self, outcome: Outcome) -> bool:
-        """Return whether a failed mission earns as much as a repaired one just because it does not end in time.
+        """Return whether a failed mission only earns much because it does not end in time.
 
         A machine that stands still until the time is up may earn more than one that works.
         """
@@ -112,7 +112,7 @@ class Goal:
         return self.lost(outcome) and late and outcome.total >= self.enough
 
     def gain(self, outcome: Outcome, before: float) -> float:
-        """Return what a mission gains if the unmutated run of its seed earned `before`. A feigned mission gains 0."""
+        """Return a mission's gain over `before`, the unmutated reward; 0 for a feigned mission."""
         return 0.0 if self.feigned(outcome) else outcome.total - before
 
     def enough_on(self, seeds: Sequence[int]) -> float:
@@ -266,7 +266,7 @@ class Trials:
         self.beside += 1
 
     def gain(self, candidate: Candidate, goal: Goal) -> float:
-        """Return a candidate's mean gain over the unmutated runs, on all seeds of the goal on which the candidate ran.
+        """Return a candidate's mean gain over the unmutated runs, on all seeds of the goal that it ran.
 
         The candidate must have run on at least one seed.
         """
@@ -307,7 +307,7 @@ class Trials:
         return [one.steps for one in known if one is not None and one.steps is not None]
 
     def same_as(self, candidate: Candidate, other: Candidate) -> int:
-        """Return the number of common seeds of two candidates if their outcomes are equal on all of them, else 0."""
+        """Return the number of two candidates' common seeds if all outcomes are equal, else 0."""
         mine, its = self._outcomes(candidate), self._outcomes(other)
         both = mine.keys() & its.keys()
         return len(both) if all(mine[seed] == its[seed] for seed in both) else 0
@@ -349,7 +349,7 @@ class Trials:
         return False
 
     def reason(self, pair: Pair) -> str:
-        """Return why the unchanged program fails on the seed of a pair, as shown by a change that has no effect.
+        """Return why the unchanged program fails on a pair's seed, as an ineffective change shows.
 
         Return "" if no such change has run, or if the mission does not fail.
         """
@@ -412,7 +412,7 @@ def label(candidate: Candidate) -> str:
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
-    """Return the gain of a mutation together with its new value, or its factor if the value is known only at run time.
+    """Return a mutation's gain and new value, or its factor if the value is known only at run time.
 
     If the constant follows a sensor or a variable, the value is the exponent.
     """

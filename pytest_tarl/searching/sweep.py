@@ -217,7 +217,7 @@ class Sweep:
             yield from self.first_steps.near(new, guard)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try small steps on operands that change the reward but were not refined: their good range may be narrow.
+        """Try small steps on unrefined operands that change the reward, in case the good range is narrow.
 
         A proposed change that clearly lost with every value so far is harmful by itself and gets no such steps. A
         constant that lost with every value may still have a good value close to the old one, so it gets them. If no

@@ -1,4 +1,4 @@
-"""Units of a search: one operand (a use of a constant), or all uses of one constant within a statement."""
+"""Units of a search: one use of a constant, or all its uses within a statement."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """If a unit's constant has a chart, add a unit with the chart after it; for a constant of 0, replace the unit."""
+    """Add a unit with a chart after each unit that has one; for a constant of 0, replace the unit."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])
@@ -67,7 +67,7 @@ def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Uni
 
 
 def change_size(unit: Unit, factor: float) -> float:
-    """Return the size of a change: |log(new value / old value)|, infinite for a changed sign or an old value of 0."""
+    """Return |log(new value / old value)|; infinite for a changed sign or an old value of 0."""
     value = unit.operands[0].value
     by: float | None = factor
     if unit.chart is not None and value is not None:
@@ -96,7 +96,7 @@ def whole_constants(apart: Sequence[Unit], scope: Scope = everywhere) -> tuple[U
 def uses_apart(
     plain: Sequence[Unit], others: Sequence[Unit], scope: Scope = everywhere
 ) -> tuple[tuple[Unit, ...], dict[Unit, tuple[Unit, ...]]]:
-    """Make one unit of all uses of each constant in `plain`; return all units, and the uses that each replaces.
+    """Unite all uses of each constant in `plain`; return all units, and the uses that each replaces.
 
     If several statements use a constant, a maintainer would change it everywhere. Uses in `others` are not searched by
     themselves, but they change together with those in `plain`. The unit takes the place of its first use.
@@ -123,7 +123,7 @@ def _same_constant(unit: Unit, other: Unit, scope: Scope) -> bool:
 
 
 def runs_once(unit: Unit) -> bool:
-    """Return whether all operands of a unit are in code that runs once: at module level or in a constructor."""
+    """Return whether all operands of a unit run once, at module level or in a constructor."""
     return all(map(sets_up, unit.operands))
 
 
@@ -159,7 +159,7 @@ def best_effects(
 def _alone(
     operand: Operand, unit: Unit, factor: float, gained: Sequence[tuple[Unit, Mapping[float, float]]]
 ) -> float | None:
-    """Return an operand's own gain if it is small and another operand may bring the gain of the whole unit."""
+    """Return an operand's own gain, if small and another one may bring the unit's gain."""
     if len(unit.operands) < 2:
         return None
     alone: dict[Operand, float] = {}
