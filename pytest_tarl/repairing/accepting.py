@@ -255,7 +255,7 @@ class Examiner:
             return False
 
     def _failing_at_once(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Return why a candidate fails on the first seed or in the designed world, or "" if it passes."""
+        """Return why a candidate fails on the first seed or as designed, or "" if it passes."""
         goal = self.order.goal
         first = goal.pairs[0].seed
         try:
@@ -296,7 +296,7 @@ class Examiner:
         return self.ledger.enter(Tried(candidate, reason, ()))
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
-        """Return the candidate with the best value nearby, or the known result of such a candidate if there is one."""
+        """Return the candidate with the best value nearby, or such a candidate's known result."""
         known = self._known(candidate)
         if known is not None:
             return known
@@ -316,7 +316,7 @@ class Examiner:
         return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:
-        """Return the result of a similar candidate that was examined before or still waits for its test, or None."""
+        """Return the result of a similar candidate, examined or waiting for its test, or None."""
         waiting = (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate))
         return self.ledger.alike(candidate) or next(waiting, None)
 

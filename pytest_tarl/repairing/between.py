@@ -98,7 +98,7 @@ def _scale(mutation: Mutation) -> tuple[float, float] | None:
 def stronger(
     candidate: Candidate, power: float, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Candidate | None:
-    """Return a candidate with its factors raised to a power, or None if one of the factors cannot be changed so."""
+    """Return a candidate with its factors raised to a power, or None if that is impossible."""
     moved: list[Mutation] = []
     for mutation in candidate.mutations:
         by = searched_step(mutation)
@@ -139,7 +139,7 @@ def on_grid(mutation: Mutation) -> bool:
 
 
 def common_factor(candidate: Candidate) -> float | None:
-    """If a candidate changes one constant at all of its uses, return its factor (or step on a chart), else None."""
+    """Return a candidate's only factor (or step) if it changes one constant, else None."""
     found = {factor(mutation) for mutation in candidate.mutations}
     constants = {mutation.operand.definition for mutation in candidate.mutations}
     several = len(candidate.mutations) > 1 and (len(constants) > 1 or None in constants)

@@ -54,7 +54,7 @@ def centred(
 def _loses_little(
     candidate: Candidate, trials: Trials, goal: Goal, seeds: Sequence[int], enough: float, margin: float
 ) -> bool:
-    """Return whether a candidate earns less than `enough` but nearly as much as designed missions of the same seeds."""
+    """Return whether a candidate earns less than `enough` but nearly as much as designed."""
     if goal.harder or fmean(trials(candidate, seed).total for seed in seeds) >= enough:
         return False
     lost = trials.lost(candidate, seeds)
@@ -105,7 +105,7 @@ def _at_the_edge(further: Candidate | None, trials: Trials, goal: Goal) -> bool:
 
 
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
-    """Return a candidate with its value scaled by `ratio`. Parameters on a grid, such as exponents, do not change.
+    """Return a candidate with its value scaled by `ratio`, except a parameter on a grid.
 
     Return None if the candidate changes several constants in several statements, or has no factor.
     """

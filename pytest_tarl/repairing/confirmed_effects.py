@@ -30,7 +30,7 @@ def gaining(effects: Effects, structural: Effects) -> Effects:
 def with_confirmed(
     effects: Effects, candidate: Candidate, repaired: Sequence[float], drifted: Sequence[float]
 ) -> Effects:
-    """Add the gain of an accepted change of one constant to the effects if the search did not measure this gain.
+    """Add the gain of an accepted change of one constant, if the search did not measure it.
 
     `effects` maps site ids to effects. `repaired` and `drifted` are total rewards of episodes with and without the
     change. The search may have found the change under another condition, or together with other constants.

@@ -1,4 +1,4 @@
-"""Deliver the result: the patch of an accepted repair, or the best refused candidate and why it was refused."""
+"""Deliver the result: an accepted repair's patch, or the best refused candidate and why."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def delivered(
 
 
 def _written(order: Order, diff: str) -> str:
-    """Write the patch and a SARIF file; return the patch's path relative to the root, or "" if that fails.
+    """Write the patch and a SARIF file; return the patch's path from the root, or "" on failure.
 
     If the patch cannot be written, the report shows the whole patch, so that the repair is not lost.
     """
@@ -99,7 +99,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
 
 
 def partial(mutants: Mutants, found: Best) -> Partial | None:
-    """Write a change that helps but is not a repair to a file, as quoted lines; return None if writing fails."""
+    """Write a helpful change that is no repair as quoted lines; return None if writing fails."""
     order, candidate = mutants.order, found.candidate
     what = repair_words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
     made = Partial(

@@ -1,4 +1,4 @@
-"""Change parameters in the file that sets them, if the analysis does not know their names in the program.
+"""Change parameters in the file that sets them, if their names in the program are unknown.
 
 In `config[mean]`, in `get_param(f"~{axis}_gain")` or in a loop over names, one expression reads several parameters.
 With `[get_param("~x", 0.0), get_param("~y", 0.0)]`, the node may store the parameters where the analysis cannot follow
@@ -76,7 +76,7 @@ def _scales(value: Number) -> bool:
 
 
 def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Place, float]]:
-    """Yield the keys of parameters with their numbers in files, or with their defaults if nothing else sets them.
+    """Yield parameter keys with their numbers in files, or else with their defaults.
 
     The last element is the usual size of such a parameter if its value is 0. The default of a parameter that is an
     operand is left out.
@@ -96,7 +96,7 @@ def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Pl
 
 
 def _defaults(analysis: Analysis, path: str) -> Iterator[tuple[str, Place, set[Span]]]:
-    """Yield the parameters that a file reads with a literal default, each with the spans of default and call."""
+    """Yield the parameters read with a literal default, with the spans of default and call."""
     try:
         source = analysed_document(analysis, path)
     except RepairError:
@@ -140,7 +140,7 @@ def places_in_force(name: str, value: Number, texts: Mapping[str, str]) -> list[
 
 
 def _rank(place: Place, keys: Sequence[str] | None) -> int:
-    """Return 0 for a number under the names of a node, 1 for other parameter files, 2 for the default in a `.cfg`."""
+    """Return 0 for a number under a node's names, 1 for other files, 2 for a `.cfg` default."""
     return 2 if place.path.endswith(".cfg") else int(keys is None or len(keys) < NAMED)
 
 
@@ -189,7 +189,7 @@ def _use(
     calls: Mapping[str, Operand],
     named: Mapping[str, tuple[SiteId, Span]],
 ) -> tuple[SiteId, Span] | None:
-    """Return the statement and the expression that most likely use a parameter, or None if the program has no flow.
+    """Return the statement and expression that likely use a parameter, or None without a flow.
 
     The first of these that exists is returned: the call that reads the parameter; an expression without a known
     parameter, in a function that contains the key; an expression in a flow with the parameter's name; any expression
@@ -242,7 +242,7 @@ def _node(analysis: Analysis, operand: Operand) -> ast.expr | None:
 
 
 def _usual_size(key: str, read: Mapping[str, Number]) -> float:
-    """Return the usual size of a parameter that is 0, taken from parameters whose names begin in the same way."""
+    """Return the usual size of a parameter of 0, from parameters with similar names."""
     first = re.split(r"[_.]", key)[0]
     alike = [
         abs(value)

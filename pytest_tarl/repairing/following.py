@@ -110,7 +110,7 @@ def _form(order: Order, sensor: Sensor, by: float, known: Mapping[str, Template]
 
 
 def _law(form: Form, designed: float, drifted: float, by: float) -> Form | None:
-    """Return a form whose power of a quantity multiplies a constant by `by`, or None if there is no suitable power.
+    """Return a form that multiplies a constant by `by` through a power of a quantity, or None.
 
     `designed` and `drifted` are the usual values of the quantity in the two worlds.
     """

@@ -101,7 +101,7 @@ class _Ends:
         return self.inner + margin <= self.place <= self.outer - margin
 
     def probe(self) -> None:
-        """Run values beyond the good ones to find the ends of the range, as long as the value might lie at an end."""
+        """Run values beyond the good ones to find the ends of the range, while the value may lie at one."""
         if self.outer == inf:
             beyond = self.farthest + max((self.farthest - self.inner) / 2, log(FARTHER))
             if self._try(beyond):
@@ -118,7 +118,7 @@ class _Ends:
             self._try((low + high) / 2)
 
     def _try(self, at: float) -> bool:
-        """Run a value on the seed on which most candidates earned too little, and store whether the value is good."""
+        """Run a value on the seed that most candidates failed, and store whether it is good."""
         candidate, pairs = self._at(at), self.goal.pairs
         worst = max(pairs, key=lambda pair: self.trials.misses[pair.seed])
         try:
@@ -134,7 +134,7 @@ class _Ends:
         return good
 
     def inside(self) -> Iterator[Candidate]:
-        """If the value is at an end of the range, yield a value in the middle, then one halfway to the middle."""
+        """For a value at an end of the range, yield one in the middle, then one halfway to it."""
         width = self.outer - self.inner
         if self.within or width == inf or width < log(NARROW):
             return
@@ -157,7 +157,7 @@ class _Ends:
 
 
 def rounded(value: float, tolerance: float) -> float:
-    """Round a value to as few digits as possible; it may change by a ratio of at most exp(`tolerance`)."""
+    """Round to as few digits as possible, by a ratio of at most exp(`tolerance`)."""
     for digits in range(1, 4):
         short = float(f"{value:.{digits}g}")
         if abs(log(short / value)) <= tolerance:

@@ -42,7 +42,7 @@ class Watch:
         return Refused(self.best, refused.reason, fmean(totals), len(totals))
 
     def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
-        """Return, in order, the candidates that nearly reached the goal on one seed, but not on all further seeds."""
+        """Return, in order, the candidates that nearly reached the goal but were not confirmed."""
         examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():

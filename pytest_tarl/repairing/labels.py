@@ -82,7 +82,7 @@ def _is_homogeneous(node: ast.expr, around: ast.AST | None) -> bool:
 
 
 def _is_whole(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression is the 1 of a weighted mean such as `alpha * x + (1.0 - alpha) * y`."""
+    """Return whether an expression is the 1 of a mean such as `alpha * x + (1.0 - alpha) * y`."""
     match source.parents.get(node):
         case ast.BinOp(
             left=ast.Constant(value=1) as left, op=ast.Sub(), right=ast.Name() | ast.Attribute() as right

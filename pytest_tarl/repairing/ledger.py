@@ -33,7 +33,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refused:
-    """A refused candidate and the reason; `mean` is its mean reward on fresh seeds, or -inf without such seeds."""
+    """A refused candidate, the reason, and its mean reward on fresh seeds (-inf without any)."""
 
     candidate: Candidate | None
     reason: Reason
@@ -100,7 +100,7 @@ def of_fresh_seeds(tried: Sequence[Tried]) -> int:
 
 
 def furthest(one: Refused, other: Refused) -> Refused:
-    """Return the candidate that passed in more worlds. On ties, return the one that earned more on fresh seeds."""
+    """Return the candidate that passed in more worlds or, on ties, earned more on fresh seeds."""
 
     def came(refused: Refused) -> tuple[bool, int, float]:
         held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0

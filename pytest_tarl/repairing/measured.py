@@ -1,4 +1,4 @@
-"""Steps that recorded missions suggest, because a value in the node differs between the worlds by a factor or offset.
+"""Steps from recorded missions in which a node's value differs by a factor or offset.
 
 For example, if electrodes deliver 45 % of their signal, the threshold for the signal must be 45 % as large. If a sensor
 reads 14 too high, a set point that is compared with the reading must be 14 higher. Such steps have the unit and the
@@ -40,7 +40,7 @@ LARGEST = 20.0  # maximum factor of a hint; the minimum is the inverse
 
 @dataclass(frozen=True)
 class Change:
-    """How a value differs in the drifted world: by a factor and by a difference (None if the pairs disagree)."""
+    """A value's change in the drifted world, as factor and difference (None if pairs disagree)."""
 
     ratio: float | None
     difference: float | None
@@ -184,14 +184,14 @@ def _change(pairs: Sequence[Pair]) -> Change:
 
 
 def _agreed(changes: Sequence[float], least: float) -> float | None:
-    """Return the mean of the changes, one per pair, if it is at least `least` and the pairs agree, else None."""
+    """Return the mean change of the pairs if it is at least `least` and they agree, else None."""
     mean = sum(changes) / len(changes)
     spread = max(changes) - min(changes)
     return mean if abs(mean) >= max(least, 1e-12) and spread <= AGREE * abs(mean) else None
 
 
 def _number(operand: Operand) -> float:
-    """Return the value of a constant; 0 for booleans, and for constants that are known only at run time."""
+    """Return the value of a constant; 0 for booleans and values known only at run time."""
     return 0.0 if operand.value is None or isinstance(operand.value, bool) else float(operand.value)
 
 
@@ -228,7 +228,7 @@ def _beside(
 
 
 def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -> Change:
-    """Return the change of the constant. It is opposite if `-constant` is compared or if a value is added to it."""
+    """Return the constant's change, opposite if `-constant` is compared or a value is added to it."""
     opposite = isinstance(inner, ast.UnaryOp) and isinstance(inner.op, ast.USub) and inner.operand is node
     if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add):
         opposite = not opposite
@@ -237,7 +237,7 @@ def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -
 
 
 def _made_at(order: Order, operand: Operand, source: Document, node: ast.expr) -> list[str]:
-    """Return the ids of the sites that assign a name or attribute. For a local name, use only the same function."""
+    """Return the ids of sites that assign a name or attribute; for a local name, in its function."""
     if not isinstance(node, ast.Name | ast.Attribute):
         return []
     code, found = ast.unparse(node), []

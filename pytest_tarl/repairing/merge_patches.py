@@ -1,4 +1,4 @@
-"""Merge the patches of several tests at the end of a run, or report the lines on which they conflict."""
+"""Merge the patches of several tests, or report the conflicting lines."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def joined(paths: Sequence[Path], cwd: Path) -> Joined:
 
 
 def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
-    """Merge different patches of the same files; return sentences about them and the patches that are left to apply."""
+    """Merge different patches of the same files; return sentences and the patches left to apply."""
     paths = [one.path for one in patches]
     if len(patches) < 2:
         return [], paths

@@ -1,4 +1,4 @@
-"""Ratios between units that a message may have. Its names, type and use suggest its quantity and thus the units.
+"""Ratios between the units that a message's names, type and use suggest.
 
 For example, a topic `/tank/pressure` may change from bar to psi, but nothing would explain the same ratio on a topic
 `/ball`. Powers of ten occur with every quantity: millimetres, percent, thousandths.
@@ -55,7 +55,7 @@ QUANTITIES: Final = {
 
 
 def ratios(texts: Iterable[str]) -> tuple[float, ...]:
-    """Return the ratios between units that a number may have, and their inverses, given its names, type and use."""
+    """Return the ratios (and inverses) between units that a number's names, type and use allow."""
     known = {word for text in texts for word in words(text)}
     fitting = [
         each for one in QUANTITIES.values() if not known.isdisjoint(one.words.split()) for each in one.ratios

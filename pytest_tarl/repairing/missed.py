@@ -93,7 +93,7 @@ class Missed:
 
 
 def _spread(found: Acceptance) -> list[Lost]:
-    """Sort the missions by loss and return equally spaced ones, so that their mean loss is close to the test's."""
+    """Return missions equally spaced by loss, so that their mean loss is close to the test's."""
     rows = zip(found.seeds, found.drifted, found.designed, strict=False)
     ranked = sorted(
         (Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss

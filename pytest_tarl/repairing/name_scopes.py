@@ -19,7 +19,7 @@ _NAME = re.compile(r"\w+")
 
 
 def name_scope(analysis: Analysis) -> Callable[[Operand], str]:
-    """Return a function that names the part of a file in which an operand's name means the same constant."""
+    """Return a function that names the part of a file where an operand's name means the same constant."""
     known: dict[str, frozenset[str]] = {}
 
     def scope(operand: Operand) -> str:

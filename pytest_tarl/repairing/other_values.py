@@ -60,7 +60,7 @@ class Others:
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Propose larger steps if the candidate fails on some seeds, or smaller steps if it just earns too little.
+        """Propose larger steps after failed seeds, or smaller ones if too little is earned.
 
         A candidate that fails on some seeds is at the edge of the range of good values.
         """
@@ -110,7 +110,7 @@ class Others:
             between.told(STRONG[0] if enough else WEAK[0])
 
     def _amid(self, between: Between, good: Candidate, harmful: bool, trials: Trials) -> Candidate:
-        """Try a value halfway inward from `good` and one outward; return the mean of all values that reach the goal.
+        """Try values inward and outward of `good`; return the mean of those that reach the goal.
 
         If larger changes harm the designed world (`harmful`), do not try the outward value.
         """
@@ -123,7 +123,7 @@ class Others:
         return good if amid is None else amid
 
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
-        """Propose a smaller change than `refused`, which may go too far: it lost reward in a few missions of its test.
+        """Propose a smaller change than `refused`, which lost reward in a few missions.
 
         Bisect between the original value and the refused one. A change that fails on the first seed of the search is
         too small; a change that passes may be too large. Find the values that also pass in the missions in which
@@ -266,7 +266,7 @@ class Others:
         return earned
 
     def bracketed(self, candidate: Candidate) -> bool:
-        """Return whether good values may lie between two close values that each lost reward in only a few missions."""
+        """Return whether good values may lie between two close values that each lost in few missions."""
         ratios = [ratio_of(candidate, other) for other in self.missed.few]
         close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
         return bool(close) and min(close) < 1.0 < max(close)
@@ -303,7 +303,7 @@ class Others:
 
 
 def ratio_of(one: Candidate, other: Candidate) -> float | None:
-    """Return the ratio of the factors of two candidates that differ only in the factor on one constant, else None."""
+    """Return the ratio of the factors of two candidates on one same constant, else None."""
     if one.guard != other.guard or operands(one) != operands(other):
         return None
     mine, its = common_factor(one), common_factor(other)

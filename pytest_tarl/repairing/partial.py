@@ -92,7 +92,7 @@ class _Tests:
     spent: int = 0
 
     def helping(self, candidate: Candidate) -> Best | None:
-        """Return the candidate with its gains, or None if it does not help or loses too much in the designed world."""
+        """Return the candidate with its gains; None if it does not help or loses too much as designed."""
         try:
             drifted = self._gained(candidate, self.mutants.order.drift)
             designed = self._gained(candidate, None) if drifted.low > 0.0 else None
@@ -111,7 +111,7 @@ class _Tests:
 
 
 def _placed(mutants: Mutants, examiner: Examiner, candidate: Candidate) -> tuple[Candidate, int]:
-    """Move the candidate to the definition if this has the same effect; return it and the number of episodes run."""
+    """Move the candidate to the definition if it acts alike there; return it and the number of episodes run."""
     trials = Trials(lambda one, seed: mutants.run(one, seed, mutants.order.drift), PLACING)
     try:
         return examiner.placing(candidate, trials) or candidate, trials.spent
@@ -120,7 +120,7 @@ def _placed(mutants: Mutants, examiner: Examiner, candidate: Candidate) -> tuple
 
 
 def _lost_as_designed(mutants: Mutants, candidate: Candidate) -> float:
-    """Return a candidate's mean loss in a few recorded episodes of the designed world; 0 if the drift is permanent."""
+    """Return the mean loss in a few designed episodes; 0 if the drift is permanent."""
     if mutants.order.permanent:
         return 0.0
     sample = mutants.order.fixture.sample

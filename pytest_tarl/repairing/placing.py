@@ -1,4 +1,4 @@
-"""Choose where to write a repair: at the constant's definition if this test uses the definition, else at the use."""
+"""Write a repair at the constant's definition if this test uses it, else at the use."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Placing:
         return moved or (None if edit == "definition" else candidate)
 
     def notes(self, candidate: Candidate) -> Iterator[str]:
-        """Yield notes that say why a constant is changed at its use, and which other code uses a changed definition."""
+        """Yield notes: why a constant is changed at its use, and which code uses a definition."""
         for mutation in candidate.mutations:
             if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
                 yield self._why[mutation.operand]
@@ -62,7 +62,7 @@ class Placing:
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
 
     def _unused(self, candidate: Candidate) -> Iterator[str]:
-        """Yield notes that name the numbers of a changed variable that do not change as this test does not use them."""
+        """Yield notes on the unchanged numbers of a changed variable, which this test does not use."""
         changed = {one.place for one in candidate.mutations if one.place is not None}
         for operand in dict.fromkeys(one.operand for one in candidate.mutations if one.place is not None):
             written = defined(self.order.analysis, operand)
@@ -77,7 +77,7 @@ class Placing:
                 )
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move mutations to definitions that the test uses. Return None if there are none or the moved repair fails."""
+        """Move mutations to definitions in use; None without any or if the moved repair fails."""
         mutations: list[Mutation] = []
         for mutation in candidate.mutations:
             places = () if _stays(mutation) else self._places(mutation, candidate, trials)
@@ -115,7 +115,7 @@ class Placing:
         return self._in_force[one]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
-        """Return the first places at which a change affects the episode: this shows that the test uses the places."""
+        """Return the first places where a change affects the episode, so that the test uses them."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
@@ -223,7 +223,7 @@ class Placing:
 
 
 def _stays(mutation: Mutation) -> bool:
-    """Return whether a mutation is already where it belongs: at a literal, at a definition, or a new expression."""
+    """Return whether a mutation is at a literal, at a definition, or a new expression."""
     return mutation.operand.literal or mutation.form is not None or mutation.place is not None
 
 
@@ -239,7 +239,7 @@ def _at(mutation: Mutation, places: Sequence[Place]) -> list[Mutation]:
 
 
 def _united(mutations: Sequence[Mutation]) -> list[Mutation]:
-    """Unite a changed literal with a factor on its use: instead of `rate = 0.1` and `3 * rate`, write `rate = 0.3`."""
+    """Unite a changed literal and a factor on its use: `rate = 0.1` and `3 * rate` become `rate = 0.3`."""
     used: dict[tuple[str, int, object], Place] = {
         (place.path, place.line, place.value): place for one in mutations if (place := one.place) is not None
     }

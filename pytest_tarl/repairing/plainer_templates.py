@@ -1,4 +1,4 @@
-"""Try a factor instead of a change that keeps state: a maintainer prefers `3.0 * turn` to an integral of `turn`.
+"""Try a factor, such as `3.0 * turn`, instead of a change that keeps state.
 
 An integral also overcomes friction or a weak actuator. The symptom is the same in all cases: an offset remains.
 """

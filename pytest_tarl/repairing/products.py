@@ -18,7 +18,7 @@ Product = tuple[str, int, int]  # file, start offset and end offset of the outer
 
 
 def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[Operand], list[Operand]]:
-    """Split operands into those that a search must move, and those that are equivalent to one of the former.
+    """Split operands into those that a search must move, and those equivalent to them.
 
     In each product, the search must move the first constant (in the given order). It must also move a constant that a
     statement uses twice, such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because both uses move together. The operand

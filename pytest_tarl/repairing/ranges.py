@@ -1,4 +1,4 @@
-"""Drifts whose size varies by episode within a range: a repair must work in every part of the range."""
+"""Drifts whose size varies by episode: a repair must work in every part of the range."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Test = Callable[[Sequence[int]], Acceptance]  # tests a candidate on the given s
 
 @dataclass(frozen=True)
 class Ranged:
-    """The seeds of a test in order, and the parts of the range in which the candidate passed or lost reward."""
+    """A test's seeds in order, and the range's parts in which the candidate passed or lost."""
 
     seeds: tuple[int, ...] = ()
     held: tuple[Band, ...] = ()
@@ -67,7 +67,7 @@ def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
 
 
 def _stratum(order: Order, seed: int) -> int:
-    """Return the stratum of a seed: a quarter of the range, or a pair of halves if the drift has two ranges."""
+    """Return a seed's stratum: a quarter of the range, or a pair of halves of two ranges."""
     drawn = _drawn(order, seed)
     first = list(order.comparison.sizes.items())[:2]
     each = STRATA if len(first) == 1 else 2
@@ -98,7 +98,7 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 
 
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
-    """If the sizes at which a candidate passed form one end of a range, describe them; otherwise return ""."""
+    """Describe the sizes at which a candidate passed if they are one end of a range, else ""."""
     for part in order.comparison.sizes:
         near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
         far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]

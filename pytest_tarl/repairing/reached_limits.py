@@ -1,4 +1,4 @@
-"""Limits that a mission reaches, but the designed mission with the same seed does not: they may stop the mission.
+"""Limits that a mission reaches, but its designed mission does not; they may stop it.
 
 For example, a bottle capper gives up when its spindle has made two turns or has turned for a second. In the designed
 world, no cap takes that much, so neither limit is ever reached. In the drifted world, the first limit is reached and,
@@ -39,7 +39,7 @@ Ints = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class _Reached:
-    """A limit, the step at which it was reached, and whether the mission without the change reached it, too."""
+    """A limit, the step at which it was reached, and whether the unchanged mission reached it."""
 
     limit: Limit
     before: bool
@@ -47,7 +47,7 @@ class _Reached:
 
 
 def reached_limits(order: Order, pairs: Sequence[Recorded], before: Trace | None = None) -> list[Limit]:
-    """Return the constants of limits that only the second mission of a pair reaches, each with a relaxing factor.
+    """Return the constants of limits that only a pair's second mission reaches, with factors.
 
     `before` is a drifted mission of the first pair's seed. Limits that it did not reach come first. Then limits are
     sorted by the time at which they are reached, because a later limit may be an effect of an earlier one.
@@ -98,7 +98,7 @@ def _reached(order: Order, step: Step, pair: Pair, before: Series | None) -> Ite
 
 
 def _newly(pair: Pair, outcome: float) -> int | None:
-    """Return the step at which a comparison has given a result once more than in the designed mission, or None.
+    """Return the step of a comparison's first result beyond the designed mission's, or None.
 
     The result must be rare in the designed mission. Only steps before the end of the drifted mission count.
     """
@@ -116,7 +116,7 @@ def _times(holds: Bools) -> Ints:
 
 
 def _stays(pair: Pair, bound: float) -> int | None:
-    """Return the first step at which a value is at a bound if it often is there, but rarely as designed; else None."""
+    """Return the first step at a bound, if the value is often there but rarely as designed, else None."""
     at = _at(pair.drifted, bound)
     often = at.mean() >= OFTEN and _at(pair.designed, bound).mean() <= RARELY
     return int(pair.drifted.step[np.flatnonzero(at)[0]]) if often else None
@@ -137,7 +137,7 @@ def _test(source: Document, line: int) -> ast.expr | None:
 
 
 def _side(source: Document, node: ast.expr, test: ast.expr) -> float:
-    """Return 1 if a larger constant makes a test true, -1 if it makes it false, and 0 if neither is known.
+    """Return 1 if a larger constant makes a test true, -1 if false, 0 if unknown.
 
     Only sums and products around the constant are followed. A constant that is subtracted has the opposite effect.
     """

@@ -1,4 +1,4 @@
-"""Corrections of sensor readings that are wrong from the start: an offset or a factor, seen in recorded missions.
+"""Corrections of sensor readings wrong from the start, by an offset or factor.
 
 Both missions of a pair begin in the same state, and when the first message arrives, no command has had an effect yet.
 If the first value of a statement then differs by the same amount or factor in all pairs, the sensor is wrong. For
@@ -87,7 +87,7 @@ def _correction(firsts: Sequence[tuple[float, float]]) -> Correction | None:
 
 
 def spread(changes: Sequence[float]) -> float:
-    """Return the difference of the largest and smallest change as a share of their mean, or 1 if the mean is 0."""
+    """Return the range of the changes as a share of their mean, or 1 if the mean is 0."""
     mean = sum(changes) / len(changes)
     return (max(changes) - min(changes)) / abs(mean) if mean else 1.0
 

@@ -21,7 +21,7 @@ EPISODES = 8  # number of episodes per test; the first episodes in which the gua
 
 @dataclass(frozen=True)
 class Beside:
-    """Results of the other tests: sentences about tests that kept and tests that lost reward, and the episodes run."""
+    """Results of other tests: sentences on tests that kept or lost reward, and the episodes run."""
 
     held: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Return whether a test depends on changed files: they are its nodes, or its nodes or code mention them."""
+    """Return whether a test depends on changed files: its nodes, or files that its nodes or code mention."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]
@@ -61,7 +61,7 @@ def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
-    """Return the indices of the recorded episodes to run: those in which the guard holds, if that is known."""
+    """Return the indices of recorded episodes to run: where the guard holds, if known."""
     fixture = neighbour.fixture
     if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
         return range(min(EPISODES, fixture.sample.episodes))

@@ -125,7 +125,7 @@ def _search(
     found: _Findings,
     watch: Watch,
 ) -> None:
-    """Run one search. If a repair is already accepted, the search runs only for its curve in the report."""
+    """Run one search; after an accepted repair, only for its curve in the report."""
     share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
     trials = purse.phase(mutants, method, watch, share)
     if share < 1.0:
@@ -348,7 +348,7 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites in the order of the slices, then the sites that are in no recording or in no flow."""
+    """Return the sites in the order of slices, then sites in no recording or flow."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
     analysis = order.analysis

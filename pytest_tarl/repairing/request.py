@@ -25,7 +25,7 @@ SMALL = 0.05  # margin as a share of the loss, used if designed missions have no
 
 @dataclass(frozen=True)
 class Neighbour:
-    """Another recorded test: the files of its nodes, a function that runs it, and the tolerated loss per episode."""
+    """Another recorded test: its node files, a function to run it, the tolerated loss per episode."""
 
     test: str
     nodes: tuple[Path, ...]
@@ -113,7 +113,7 @@ def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
-    """Return the goal: the drifted episodes with a loss (the worst last) and the totals that a mutation must reach."""
+    """Return the goal: drifted episodes with a loss (worst last), and the totals to reach."""
     spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
     near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
     lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)

@@ -68,7 +68,7 @@ def rescaled(order: Order, recorded: Sequence[Recorded]) -> list[tuple[Mutation,
 
 
 def _factor(pairs: Sequence[Pair], units: Sequence[float]) -> float | None:
-    """Return the factor that makes the numbers of a message as large as in the designed world, or None.
+    """Return the factor that makes a message's numbers as large as designed, or None.
 
     `units` are the ratios of the units that the message may have.
     """
@@ -150,7 +150,7 @@ def _site(order: Order, source: Document, node: ast.expr) -> SiteId | None:
 
 
 def reads(source: Document, line: int) -> list[ast.expr]:
-    """Return the expressions that read a number from the message of the callback that is defined at a line.
+    """Return the expressions that read a number from the message of a callback at a line.
 
     If the callback stores the message, as `self.pose = msg` does, its later reads count as well.
     """

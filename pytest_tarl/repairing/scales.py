@@ -56,7 +56,7 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
 
 
 def _spreads(order: Order, operand: Operand) -> Mapping[str, float]:
-    """Map the expression of each sensor reading that a statement uses to the usual size of an offset on it.
+    """Map sensor readings of a statement to the usual size of an offset on them.
 
     If a reading is 1500 ± 100, a likely offset is about 100.
     """
@@ -71,7 +71,7 @@ def _spreads(order: Order, operand: Operand) -> Mapping[str, float]:
 def _beside(
     source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes, read: Mapping[str, float]
 ) -> Iterator[float]:
-    """Yield the usual sizes of the values to which a constant is added, and the usual size of the sum.
+    """Yield the usual sizes of values to which a constant is added, and of the sum.
 
     If the constant is 0, also yield the sizes of values that are combined or compared with it. For a sensor reading,
     yield the size in `read` instead. Yield nothing if the constant is a factor or stands alone. The results of most

@@ -16,7 +16,7 @@ GAP = 0.4  # minimum width of the gap between two groups of values, as a share o
 
 
 def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
-    """Return the factor on a threshold after which as many values lie above it as designed; None if they already do.
+    """Return the factor that puts as many values above a threshold as designed; None if they already do.
 
     `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the share must
     differ in the same direction. The new threshold lies halfway between two drifted values, on a log scale, or beyond
@@ -40,7 +40,7 @@ def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> floa
 
 
 def between_groups(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
-    """Return the factor on a threshold that moves it between the same two groups of values as designed, or None.
+    """Return the factor that moves a threshold between the same groups as designed, or None.
 
     For example, the voltage of open contacts is near 21 V, and that of a charger near 28 V. If worn contacts leave only
     23 V of the 28 V, the threshold must lie between 21 and 23 V. A factor is returned only if all of these conditions
@@ -60,7 +60,7 @@ def between_groups(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> 
 
 
 def _gap(values: Floats) -> tuple[float, float] | None:
-    """Return the ends of the gap between two groups of sorted values, or None if there is no clear gap."""
+    """Return the ends of a clear gap between two groups of sorted values, or None."""
     if values.size < 2 * FEWEST:
         return None
     gaps = np.diff(values)

@@ -86,7 +86,7 @@ def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
 
 
 def operands(order: Order) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows: those with the most readable changes first, then as in the slices.
+    """Return all operands of the flows, with the most readable changes first, then by slice.
 
     Among the operands are entries of tables of settings (see `table_entries`). There are also constants that start-up
     code passes to a library object or stores in a list; they rank like the statements that use the object.
@@ -133,7 +133,7 @@ def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]
 def _given_to_several(
     analysis: Analysis, found: Mapping[Operand, int], ranks: Mapping[SiteId, int]
 ) -> dict[Operand, int]:
-    """Map the constants that a program passes to objects of its own classes to the rank of their best user.
+    """Map constants passed to several own-class objects to the rank of their best user.
 
     If a class has only one object, the constant is found where the object uses it. If the class has several objects,
     such as two wheels, the use stands for several constants. Then each constant is changed where its object is made.
@@ -149,7 +149,7 @@ def _given_to_several(
 
 
 def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ...]:
-    """Return operands that decide when or what the nodes publish, but that are in no data flow; most readable first.
+    """Return operands that decide publishing but are in no data flow; most readable first.
 
     The operands in `ranked`, which the slices rank, are left out.
     """
@@ -159,7 +159,7 @@ def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ..
 
 
 def _aside(analysis: Analysis) -> list[Operand]:
-    """Return the operands of statements that decide when or what the nodes publish, but that are in no data flow."""
+    """Return the operands of statements that decide publishing but are in no data flow."""
     steps = (*analysis.timing, *analysis.deciding)
     return list(dict.fromkeys(o for step in steps for o in analysis.operands(step.site)))
 

@@ -19,7 +19,7 @@ def telling(order: Order) -> list[Sensor]:
 
 
 def varies(order: Order, sensor: Sensor) -> bool:
-    """Return whether a sensor uses more bins in the drifted world, so that no single constant fits all its values.
+    """Return whether a sensor uses more bins after the drift, so no constant fits all values.
 
     A bin counts by its share of the steps: the number is the exponential of the entropy of the shares.
     """
@@ -34,7 +34,7 @@ def continuous(sensor: Sensor) -> bool:
 
 
 def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
-    """Return a sensor's mean absolute value, computed from the middles of its bins; 1 if the mean is 0.
+    """Return a sensor's mean absolute value from the middles of its bins; 1 if it is 0.
 
     `world` defaults to the drifted world.
     """
@@ -48,7 +48,7 @@ def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
 
 
 def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
-    """Yield, for every entry of the Markov chain, the low and high end of the sensor's bin and the number of steps."""
+    """Yield low and high end of the sensor's bin and steps, per Markov chain entry."""
     names = [one.name for one in order.comparison.sensors]
     at = names.index(sensor.name)
     for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
@@ -61,7 +61,7 @@ def _used(shares: Mapping[tuple[float, float], float]) -> float:
 
 
 def _overlap(order: Order, sensor: Sensor) -> float:
-    """Return the share of steps that both worlds spend in the same bins; 1 if either world has no steps."""
+    """Return the share of steps in bins of both worlds; 1 if one has no steps."""
     designed = _shares(order, order.fixture.sample, sensor)
     drifted = _shares(order, order.online.recorded.sample, sensor)
     if not designed or not drifted:

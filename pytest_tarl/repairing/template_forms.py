@@ -89,7 +89,7 @@ def _inside(spot: Spot, twin: Spot | None) -> tuple[Spot, Spot | None]:
 
 
 def _by(template: Template, sensor: Sensor, spot: Spot, twin: Spot | None) -> Form:
-    """Return the form with a sensor, for both axes if the message has the sensor's field for the other axis, too."""
+    """Return the form with a sensor, for both axes if the message has the other axis's field."""
     bare = Form(template, sensor=sensor)
     axes = axes_of(spot, twin) if twin is not None else None
     path, _, last = sensor.path.rpartition(".")
@@ -139,7 +139,7 @@ def _limited(node: ast.expr) -> bool:
 
 
 def _scales(order: Order, sensor: Sensor, spot: Spot) -> dict[str, float]:
-    """Return, for each key of `of` in a template (such as `usual`), the size by which defaults are multiplied."""
+    """Return, per key of `of` in a template (such as `usual`), the size that scales defaults."""
     drifted = usual(order, sensor)
     scales = {"sensor": 1.0 / drifted, "usual": drifted, "ratio": spot.larger / drifted}
     if sensor.low is not None and sensor.low >= 0.0:

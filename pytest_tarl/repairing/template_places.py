@@ -293,7 +293,7 @@ def axes_of(one: Spot, other: Spot) -> tuple[str, str] | None:
 
 
 def _axes(one: str, other: str) -> tuple[str, str] | None:
-    """Return the axes that two names begin or end with if the rest of both is the same, as in `ex` and `ey`."""
+    """Return the axes in which two otherwise equal names differ, as in `ex` and `ey`, else None."""
     for axes in (*_AXES, *(axes[::-1] for axes in _AXES)):
         first, second = axes
         if one.endswith(first) and other.endswith(second) and one[: -len(first)] == other[: -len(second)]:

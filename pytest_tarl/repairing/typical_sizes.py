@@ -33,15 +33,15 @@ class TypicalSizes:
         }
 
     def of(self, site: SiteId, node: ast.expr) -> float:
-        """Return the usual size of an expression of a site: as recorded, else estimated from its parts, else 1."""
+        """Return a site expression's usual size: recorded, else estimated from its parts, else 1."""
         return self.by_site.get(str(site)) or self._estimated(site, node) or 1.0
 
     def known(self, site: SiteId, node: ast.expr) -> float | None:
-        """Return the usual size of a part of a site's expression, estimated from its operands, or None if unknown."""
+        """Return a part's usual size, estimated from its operands, or None if unknown."""
         return self._estimated(site, node)
 
     def _estimated(self, site: SiteId, node: ast.expr) -> float | None:
-        """Return the size estimated from the parts (for a sum, the size of the largest part), or None if unknown."""
+        """Return the size estimated from parts (the largest of a sum), or None if unknown."""
         if isinstance(node, ast.Constant):
             number = finite_number(node.value)
             return None if number is None else abs(number)

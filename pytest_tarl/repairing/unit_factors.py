@@ -1,4 +1,4 @@
-"""Literal factors that convert a unit: they follow from the definition of the units, and no drift changes them.
+"""Literal factors that convert units by definition; no drift changes them.
 
 In `kpa = msg.fluid_pressure / 1000.0`, a smaller divisor has the same effect as a lower threshold for `kpa`, but nobody
 looks for the change there. A sensor whose values are too large is corrected by a separate factor.
@@ -61,7 +61,7 @@ def _beside_pi(source: Document, product: ast.BinOp) -> bool:
 
 
 def _of_message(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression reads a field of an argument of its function, and does not compute with it."""
+    """Return whether an expression is a field of an argument, without computation."""
     function = source.function(node)
     if function is None:
         return False

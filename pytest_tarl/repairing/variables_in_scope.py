@@ -32,7 +32,7 @@ def variables(order: Order, used: Sequence[Operand]) -> Iterator[tuple[str, floa
 
 
 def _held(order: Order, span: Span, used: Operand) -> str:
-    """Return the name that the statement at a span assigns, if it holds the value where a constant is used, else ""."""
+    """Return the name that a statement assigns, if it is readable where a constant is used, else ""."""
     if span.path != used.span.path:
         return ""
     try:

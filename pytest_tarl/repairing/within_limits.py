@@ -1,4 +1,4 @@
-"""The expression that a clamp limits: a correction belongs there, so that the limits still hold for the sum.
+"""The expression that a clamp limits; a correction there stays within the limits.
 
 In `max(-top, min(top, gain * error))`, this is `gain * error`. A helper that limits its argument, as in
 `mass * push(error)`, is followed: its argument is limited.
@@ -14,7 +14,7 @@ from pytest_tarl.patching.document import Document, Function, argument_names, ca
 
 
 def within_limits(source: Document, node: ast.expr, known: Collection[str]) -> ast.expr | None:
-    """Return the expression that a value limits, or None if it has no limits or the expression is ambiguous.
+    """Return the limited expression, or None without limits or if it is ambiguous.
 
     `known` contains the code of named constants, which count as limits and as factors.
     """
@@ -47,7 +47,7 @@ def _clamped(source: Document, call: ast.Call, known: Collection[str]) -> ast.ex
 
 
 def _passed(source: Document, call: ast.Call, known: Collection[str]) -> ast.expr | None:
-    """Return the only argument of a call if the function is in this file and only limits a value computed from it."""
+    """Return the only argument of a call whose function just limits a value computed from it."""
     functions = [
         one for one in ast.walk(source.tree) if isinstance(one, Function) and one.name == called(call)
     ]

@@ -18,7 +18,7 @@ NOISY = 0.04
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
-    """Run episodes at the points of the coarse sweep along a ray, starting at the far end. Raise BudgetSpentError."""
+    """Run episodes at the coarse points along a ray, far end first. Raise BudgetSpentError."""
     for t in curve.ray.places:
         curve.evidence[t] = evaluator.examine(curve.ray.point(t), COARSE)
     curve.swept = True
@@ -41,7 +41,7 @@ def bisect(curve: Curve, evaluator: Evaluator) -> None:
 
 
 def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
-    """Test failing points on fresh seeds until one is confirmed; the k-th test has the risk `risk / (k(k + 1))`.
+    """Test failing points on fresh seeds until one is confirmed; test k has risk `risk / (k(k + 1))`.
 
     The search does not use these seeds, so all rays can share them. Raise BudgetSpentError.
     """

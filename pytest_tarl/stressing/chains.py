@@ -1,4 +1,4 @@
-"""Choose the drifts that are tested on fresh seeds: chains that lead from far beyond the boundary towards it.
+"""Choose drifts to test on fresh seeds: chains from far beyond the boundary towards it.
 
 The tests of a chain stop at the first drift that is not confirmed, so the drifts before it are confirmed in any case.
 Each drift is tested at the whole risk of the chain (fixed-sequence procedure; Maurer, Hothorn & Lehmacher 1995).
@@ -103,7 +103,7 @@ def likely(nearest: Nearest, point: Point) -> bool:
 
 
 def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
-    """Add drifts on the ray through a chain's near end to the chain, if the model covers the near end.
+    """Add drifts on the ray through a chain's near end, if the model covers that end.
 
     A further drift takes fewer episodes in this chain than in a new one. The nominal episodes have run already, and a
     test of the failure rate first runs the seeds that failed before.

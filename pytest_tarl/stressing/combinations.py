@@ -170,7 +170,7 @@ class Together:
 
 
 def _share(number: int) -> float:
-    """Return the share of the risk of a chain, by its number from 0; with RECORDED, the sum over all chains is 1."""
+    """Return a chain's share of the risk by its number from 0; with RECORDED, all sum to 1."""
     if number < len(SHARES):
         return SHARES[number]
     return (1.0 - RECORDED - sum(SHARES)) * 0.5 ** (number - len(SHARES) + 1)
@@ -240,7 +240,7 @@ class Combined:
         self._test(sorted(proposed, key=lambda one: -distance(self.evaluator.space, one)))
 
     def draw(self) -> None:
-        """Predict the map and the nearest failures from the episodes so far, if every ray has some; run none."""
+        """Predict the map and nearest failures, if every ray has some episodes; run none."""
         if not all(curve.evidence for curve in self.together.curves):
             return
         with self.evaluator.limited(0.0):
@@ -334,7 +334,7 @@ class Combined:
                 return
 
     def _trim(self) -> None:
-        """If the nearest confirmed drift is at a jump, move single directions of it towards nominal, and test it.
+        """Move single directions of the nearest confirmed drift at a jump towards nominal; test it.
 
         While a chain is interrupted, nothing is moved: its next drift may fail, too, and then there is no jump. Raise
         BudgetSpentError.
@@ -413,7 +413,7 @@ def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> No
 
 
 def _inside(curves: Sequence[Curve]) -> Iterator[tuple[Ray, float]]:
-    """Yield each ray with the largest t to use in a pair; skip options under which the guarantee fails alone."""
+    """Yield each ray with the largest t for a pair; skip options that fail the guarantee alone."""
     for curve in curves:
         if not curve.failing:
             yield curve.ray, 1.0

@@ -68,7 +68,7 @@ class Coordinates:
         return all(point[name] == self.base[name] for name in self.base if name not in self.spans)
 
     def within(self, vector: Vector, limit: float) -> Vector | None:
-        """Return the vector, shortened if necessary, so that the distance of its point from nominal is at most `limit`.
+        """Return the vector, shortened to at most distance `limit` of its point from nominal.
 
         Return None if the options alone are at a larger distance.
         """

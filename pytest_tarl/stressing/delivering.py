@@ -19,7 +19,7 @@ from tarl_lint.files import write_atomically
 
 @dataclass(frozen=True)
 class Delivered:
-    """The lines for the terminal, the reason why the test fails (or an empty text), and whether Ctrl-C was pressed."""
+    """The lines for the terminal, why the test fails (or ""), and whether Ctrl-C was pressed."""
 
     lines: tuple[str, ...]
     problem: str
@@ -51,7 +51,7 @@ def deliver(request: Request, root: Path) -> Delivered:
 
 
 def deliver_repairs(found: Stress, root: Path) -> list[str]:
-    """Write the result and the page again, with the repairs; return a line for each file that could not be written."""
+    """Write result and page again, with the repairs; return a line per file not written."""
     name = f"{slug(found.test)}-{slug(found.drift)}"
     jobs = _documents(found, root, name)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
@@ -96,7 +96,7 @@ def _without_salib(found: Stress) -> tuple[str, ...]:
 
 
 def _written(found: Stress, root: Path, name: str, memory: kept.Kept) -> list[str]:
-    """Write the files; return a line for each that could not be written, and a line with the path of the page."""
+    """Write the files; return a line per file not written, and a line with the page's path."""
     folder = root / ".tarl"
     report = _page(root, name)
     jobs = _documents(found, root, name)

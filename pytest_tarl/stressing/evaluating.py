@@ -100,7 +100,7 @@ class Evaluator:
 
     @property
     def left(self) -> int:
-        """Return how many more episodes the budget allows; a time limit counts as episodes at the mean speed so far."""
+        """Return how many more episodes the budget allows; a time limit counts at the mean speed."""
         if self.seconds is None:
             return self.budget - self.spent
         passed = monotonic() - self.begun
@@ -215,7 +215,7 @@ class Evaluator:
         return [RAYS, *self._released]
 
     def losses(self, point: Point) -> tuple[list[float], int]:
-        """Return the losses of the episodes at a point from which the model may learn, and how many failed.
+        """Return the losses at a point that the model may learn, and how many episodes failed.
 
         These are the episodes of the search and of the released pools. A loss is the difference from the nominal
         episode with the same seed, in units of the tolerated loss; it is positive if the episode earned less. Raise
@@ -228,7 +228,7 @@ class Evaluator:
         return shares, sum(not one.passed for one in outcomes)
 
     def totals(self, point: Point) -> list[tuple[float, float]]:
-        """Return the rewards of the search's episodes at a point, each with that of the nominal episode of its seed."""
+        """Return the rewards of a point's search episodes, each with its seed's nominal reward."""
         return [(one.total, usual.total) for one, usual in zip(*self._pairs(SEARCH, point), strict=True)]
 
     @property
@@ -245,7 +245,7 @@ class Evaluator:
         ]
 
     def _learned(self, point: Point) -> tuple[list[Outcome], list[Outcome]]:
-        """Return the outcomes at a point from which the model may learn, and the nominal ones of the same seeds."""
+        """Return the outcomes at a point that the model may learn, and their seeds' nominal ones."""
         pairs = [self._pairs(pool, point) for pool in (SEARCH, *self._released)]
         outcomes, nominal = ([*chain.from_iterable(part)] for part in zip(*pairs, strict=True))
         if not outcomes:
@@ -262,7 +262,7 @@ class Evaluator:
         return outcomes[: len(rows)], [nominal[row] for row in rows]
 
     def _nominal(self, pool: str, count: int) -> Sequence[Outcome]:
-        """Return the nominal outcomes of a pool; if the pool has none, each is replaced by the recorded mean."""
+        """Return a pool's nominal outcomes; without any, the recorded mean replaces each."""
         if pool in self._unpaired:
             return [Outcome(True, fmean(self.guarantee.totals))] * count
         return self._known.get((pool, *self._usual), [])
@@ -272,13 +272,13 @@ class Evaluator:
         return tuple(self.space.nominal.values())
 
     def _rows(self, pool: str, point: Point, count: int) -> Sequence[int]:
-        """Return the numbers of the first `count` seeds of a pool at a point, in the order in which they run."""
+        """Return the numbers of a pool's first `count` seeds at a point, in running order."""
         if pool == SEARCH:
             return self.rows(point, count)
         return self._orders.get((pool, *point.values()), range(count))[:count]
 
     def ordered(self, pool: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
-        """Run the seeds of a fresh pool with the numbers `rows` at a point; return all outcomes there by number.
+        """Run the seeds `rows` of a fresh pool at a point; return all outcomes there by number.
 
         Raise BudgetSpentError if the budget does not cover the missing ones.
         """
@@ -290,7 +290,7 @@ class Evaluator:
         return dict(zip(order, known, strict=True))
 
     def count(self, pool: str, count: Count) -> None:
-        """Store an estimate of how many episodes of a pool fail; it replaces an earlier estimate for the same drift.
+        """Store how many episodes of a pool fail (an estimate), instead of the drift's earlier one.
 
         The model learns from the estimate once the pool is released.
         """

@@ -51,7 +51,7 @@ class Curve:
 
     @property
     def bracket(self) -> tuple[float, float] | None:
-        """Return the nearest failing t and the measured t just before it, in ascending order; None if no t fails."""
+        """Return the nearest failing t and the measured t before it; None if no t fails."""
         if not self.failing:
             return None
         far = self.failing[0]
@@ -78,7 +78,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """The boundary along a ray: the guarantee holds up to `near` and fails at `far`; `at` is the estimate.
+    """A ray's boundary: the guarantee holds up to `near`, fails at `far`; `at` is the estimate.
 
     If the margin never rises with the drift, the boundary lies between `near` and `far` with confidence CONFIDENCE.
     `near` is None if no value except the nominal one was shown to hold.
@@ -115,7 +115,7 @@ class MarginMap:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The Sobol indices of a direction: the shares of the margin's variance over the space that the direction explains.
+    """A direction's Sobol indices: shares of the margin's variance over the space.
 
     `first` is the share of the direction alone; `total` also includes its combinations with other directions. The error
     of a share is half the width of its confidence interval.
@@ -161,7 +161,7 @@ class Statements:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """How a repair moves a boundary: in words, and as values at which the guarantee was shown to hold and to fail.
+    """How a repair moves a boundary, in words, and as values that hold and that fail.
 
     A value is None if neither was shown. For a single direction, values are numbers of its range. For a combination,
     they are distances from nominal.
@@ -191,7 +191,7 @@ class Draws:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A search for a repair in one region of drifts, and the effects of the repair if one was accepted."""
+    """A search for a repair in a region of drifts, and the accepted repair's effects."""
 
     region: str
     told: str  # description of the repair, or reason why there is none

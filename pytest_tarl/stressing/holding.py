@@ -63,7 +63,7 @@ def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) ->
 
 
 def least(share: float, failed: int, risk: float) -> int:
-    """Return how many episodes are needed to show a success rate of at least `share` when `failed` of them fail."""
+    """Return the number of episodes that shows a success rate of `share` if `failed` fail."""
     # upper limit of the search: of `failed` + 1 groups of episodes, at least one group has no failure
     most = (failed + 1) * episodes_for_quantile(1.0 - share, 1.0 - risk / (failed + 1))
     sizes = range(LEAST, max(most, LEAST) + 1)
@@ -71,7 +71,7 @@ def least(share: float, failed: int, risk: float) -> int:
 
 
 def _values(curve: Curve, evaluator: Evaluator) -> tuple[tuple[float, float], int]:
-    """Return the two values of t to test, and the number of episodes from which the loss is bounded.
+    """Return the two values of t to test, and the number of episodes that bounds the loss.
 
     The values depend only on the search's episodes, so the fresh seeds stay independent. A value of 0 is not tested.
     """

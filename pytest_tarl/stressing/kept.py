@@ -31,7 +31,7 @@ EPISODES = 4  # number of episodes per replayed drift
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """The failing drifts of one test and space in the database in `folder`; `key` names the test and the space.
+    """A test's failing drifts in a space, in the database in `folder`; `key` names both.
 
     Hypothesis stores each drift in a file of its own, so that runs of several tests do not disturb each other.
     """
@@ -96,7 +96,7 @@ def _as_point(value: bytes, space: Space) -> Point | None:
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """The result of replaying a stored drift: the number of episodes that passed, and the mean loss of reward."""
+    """A replayed stored drift: the number of passed episodes, and the mean loss of reward."""
 
     point: Point
     fails: bool

@@ -28,7 +28,7 @@ def cut_off(losses: Sequence[float]) -> Vector:
 
 
 def typical_variance(every: Sequence[Vector]) -> float:
-    """Return the mean variance of the losses of several drifts, with a cap so that noisy drifts do not dominate.
+    """Return the mean variance of several drifts' losses, capped against noisy drifts.
 
     Losses above HIGHEST count as HIGHEST. If all losses of a drift are above it, the drift lies far beyond the boundary
     and is ignored. The cap depends only on drifts whose losses differ from each other, because all episodes of the
@@ -40,7 +40,7 @@ def typical_variance(every: Sequence[Vector]) -> float:
 
 
 def nominal_variance(given: Guarantee, typical: float) -> float:
-    """Return the variance that the nominal episode of a pair adds to a loss, at most half of the typical one.
+    """Return the variance that a pair's nominal episode adds to a loss, at most half the typical.
 
     The rewards of two episodes with the same seed may be similar, so the variance of the recorded rewards is only an
     upper limit.
@@ -89,7 +89,7 @@ def standard_error(losses: Vector, typical: float) -> float:
 
 
 def _tells(losses: Vector) -> bool:
-    """Return whether a variance can be estimated from losses: there are at least two, and not all are at the limit."""
+    """Return whether a variance can be estimated: two or more losses, not all at the limit."""
     return len(losses) > 1 and min(losses.tolist()) < HIGHEST
 
 

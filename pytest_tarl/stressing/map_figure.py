@@ -61,7 +61,7 @@ def answer(margin: float, spread: float) -> str:
 
 
 def _cells(found: MarginMap) -> Iterator[str]:
-    """Yield a rectangle for each sequence of cells in a row with the same result, and the predicted boundary."""
+    """Yield a rectangle per run of equal cells in a row, and the predicted boundary."""
     count = len(found.margins)
     side = SIZE / count
     for row, (margins, spreads) in enumerate(zip(found.margins, found.spreads, strict=True)):
@@ -95,7 +95,7 @@ def _boundary(found: MarginMap) -> str:
 
 
 def _marks(stress: Stress, found: MarginMap) -> Iterator[str]:
-    """Yield a ring at the nominal drift, and a cross at each confirmed failure in the plane of the map."""
+    """Yield a ring at the nominal drift, and a cross at each confirmed failure in the plane."""
     x, y = _place(found, dict(stress.space.nominal))
     yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="#fff" stroke="{INK}" stroke-width="2"/>'
     for one in stress.failures:

@@ -26,7 +26,7 @@ def importance(curves: Sequence[Curve]) -> dict[str, float]:
 
 
 def lost(curve: Curve) -> float:
-    """Return the largest loss of margin along a ray, in margins: at a loss of 1, the guarantee is just met."""
+    """Return the largest loss along a ray, in margins; at 1, the guarantee is just met."""
     return max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
 
 

@@ -231,7 +231,7 @@ class Nearest:
 
     @cached_property
     def _share(self) -> float:
-        """Return the failure rate that a test with the largest number of fresh episodes shows in about 4 of 5 cases."""
+        """Return the failure rate that the largest test shows in about 4 of 5 cases."""
         episodes = NEAREST[-1]
         most = most_passed(self.evaluator.guarantee, episodes, self.risk * SPENT[-1])
         if most < 0:
@@ -358,6 +358,6 @@ class Nearest:
 
 
 def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:
-    """Set the smallest components of a vector to 0, but only if the model then still expects a failure."""
+    """Set a vector's smallest components to 0, if the model then still expects a failure."""
     kept: Vector = np.where(np.abs(vector) < TRIFLE * float(np.linalg.norm(vector)), 0.0, vector)
     return kept if model.excess(kept[None, :], errors)[0] >= 0.0 else vector

@@ -35,7 +35,7 @@ LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated lo
 
 @dataclass(frozen=True)
 class Sample:
-    """A tried drift: its vector, its mean loss, its number of failed episodes, and the seeds of its episodes.
+    """A tried drift: its vector, mean loss, number of failed episodes, and episode seeds.
 
     `loss` is in units of the tolerated loss, and `spread` is its standard error. `sources` holds, for each episode, the
     pool and the number of its seed. `losses` holds the losses of the episodes in the same order.
@@ -126,7 +126,7 @@ class Prediction:
 
     @property
     def luck(self) -> float:
-        """Return the variance of a seed's effect on the logit of the failure rate, an effect common to all drifts."""
+        """Return the variance of a seed's effect, common to all drifts, on the failure rate's logit."""
         return 0.0 if self._rate_fit is None else self._rate_fit.luck
 
     @property
@@ -161,7 +161,7 @@ class Prediction:
 
     @one_thread
     def shortest(self, errors: float, limit: float, draws: np.random.Generator) -> Vector | None:
-        """Return the shortest vector up to `limit` that the model expects to fail, or None if no such vector was found.
+        """Return the shortest vector up to `limit` that the model expects to fail, or None.
 
         The failure must be expected even if the true losses are `errors` standard deviations below the predicted ones.
         The search is random and may miss the shortest vector.
@@ -246,7 +246,7 @@ class Prediction:
 
     @cached_property
     def _shared(self) -> float:
-        """Return the relative error, common to all predicted losses, that is due to the choice of the common seeds."""
+        """Return the relative error of all predicted losses due to the choice of common seeds."""
         if not self._samples:
             return 0.0
         return shared_error(self._samples, self._at_known[0], self._typical)
@@ -257,7 +257,7 @@ class Prediction:
         return self._means(self._vectors)
 
     def _priors(self, vectors: Vector) -> tuple[Matrix, Matrix | None]:
-        """Return the prior covariances of vectors with the fitted drifts: of the losses, and of the logits or None."""
+        """Return vectors' prior covariances with the fitted drifts: of losses, and of logits or None."""
         units, rates = self._loss_fit.units, self._rate_fit
         if rates is None:
             return covariance(vectors * units, self._vectors * units), None
@@ -285,7 +285,7 @@ class Prediction:
     def _largest(
         self, score: Callable[[Vector], Vector], room: float, draws: np.random.Generator
     ) -> tuple[Vector, float]:
-        """Draw random vectors of length at most `room`, and return the one with the largest score, and this score."""
+        """Return the best-scored of random vectors of length at most `room`, and its score."""
         low, high = self.coordinates.low, self.coordinates.high
         shape = (DRAWN, len(low))
         drawn = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
@@ -308,7 +308,7 @@ class Prediction:
 
 
 def shared_error(samples: Sequence[Sample], means: Vector, typical: float) -> float:
-    """Return the relative error, common to all predicted losses, that is due to the choice of the common seeds.
+    """Return the relative error of all predicted losses due to the choice of common seeds.
 
     With some seeds, all drifts may lose more than on average by the same factor, for example because there is more
     reward to lose. Drifts that share their seeds share this error, so more drifts do not reduce it. `means` are the

@@ -57,7 +57,7 @@ class RateTests:
         return shown
 
     def _looks(self) -> list[tuple[int, int]]:
-        """Return pairs: a number of seeds, and how many of them must fail to show that the drift fails too often."""
+        """Return pairs: a number of seeds, and how many must fail to show that the drift fails too often."""
         given = self.evaluator.guarantee
         return [
             (size, size - most_passed(given, size, self.risk * share, "rate"))
@@ -101,7 +101,7 @@ def _blocks(groups: Sequence[Sequence[int]]) -> Iterator[list[int]]:
 
 
 def _forecast(groups: Sequence[Sequence[int]], outcomes: Mapping[int, bool]) -> float:
-    """Forecast the failures among all seeds: the remaining seeds fail a little more often than those that ran last.
+    """Forecast all seeds' failures: the remaining ones fail a little more often than recent ones.
 
     If there are several groups, the first one consists of seeds that failed under another drift. Its failures say
     little about the other groups, so all remaining seeds of those are assumed to fail.

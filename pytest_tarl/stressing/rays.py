@@ -27,7 +27,7 @@ class Ray:
 
     @property
     def continuous(self) -> bool:
-        """Return whether every t gives a different point; on a ray to an option, all t above 0 give the same point."""
+        """Return whether every t gives a different point; False on a ray to an option."""
         return not any(isinstance(self.space.extents[name], Choice) for name in self.names)
 
     @property
@@ -55,7 +55,7 @@ class Ray:
 
 
 def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
-    """Return the rays along each single direction: to both ends of a range, and to each option of a choice."""
+    """Return the rays along single directions: to both ends of a range, to each option."""
     found = []
     for name, extent in space.extents.items():
         usual = nominal(extent)
@@ -86,7 +86,7 @@ def distance(space: Space, point: Point) -> float:
 
 
 def offset(extent: Span | Choice, number: float) -> float:
-    """Return the distance of a number from nominal, in units of the range, or 1 for an option that is not nominal."""
+    """Return a number's distance from nominal in units of the range; 1 for another option."""
     away = abs(number - nominal(extent))
     return float(away > 0) if isinstance(extent, Choice) else away / (extent.high - extent.low)
 

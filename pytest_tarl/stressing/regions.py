@@ -28,7 +28,7 @@ class Region:
 
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
-    """Yield the regions beyond a failure, widest first; each covers the same share of what remains of every range."""
+    """Yield the regions beyond a failure, widest first, with equal shares of what remains of every range."""
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []
@@ -47,7 +47,7 @@ def regions(space: Space, failed: Failure) -> Iterator[Region]:
 
 
 def end(extent: Span | Choice, number: float) -> float:
-    """Return the end of a range on the side of a number; for an option, return the number itself."""
+    """Return a range's end on the side of a number; of an option, the number itself."""
     if isinstance(extent, Choice):
         return number
     return extent.high if number > nominal(extent) else extent.low

@@ -59,7 +59,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
 
 
 def affordable(size: int, left: int) -> int:
-    """Return how many rows of the sample `left` episodes allow for `size` directions, or 0 if they are too few."""
+    """Return the sample rows that `left` episodes allow for `size` directions; 0 if too few."""
     return next((rows for rows in ROWS if rows * (size + 3) <= left), 0) if size > 1 else 0
 
 

@@ -68,7 +68,7 @@ def trimmed(point: Point, evaluator: Evaluator, tried: list[Point]) -> Iterator[
 
 
 def _fails(point: Point, evaluator: Evaluator, tried: list[Point]) -> bool:
-    """Return whether a few episodes show a failure; after the first ones, run more only if these suggest a failure."""
+    """Return whether a few episodes show a failure; run more only if the first suggest it."""
     found = evaluator.examine(point, SIZES[0])
     tried.append(point)
     return found.failing and evaluator.examine(point, SIZES[1]).result == "fails"

@@ -125,7 +125,7 @@ def _innermost(stress: Stress) -> list[Failure]:
 
 
 def _alone(stress: Stress, one: Failure) -> str:
-    """Return the remark that the guarantee seems to hold under each change alone, unless one was found to fail."""
+    """Return the remark that the guarantee seems to hold under each change alone, or ""."""
     for curve in stress.curves:
         (name,) = curve.ray.names
         extent = stress.space.extents[name]
@@ -265,7 +265,7 @@ def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
 
 
 def _held(name: str, curves: list[Curve]) -> list[str]:
-    """Return a sentence about the sides of a range without a boundary: up to which values the guarantee holds."""
+    """Return a sentence on the range's sides without a boundary: up to where the guarantee holds."""
     limits = [
         f"{name} {_sign(curve.ray)} {_number(curve.ray, curve.held)}"
         for curve in curves
