@@ -48,7 +48,7 @@ def sinks_told_apart(records: Iterable[SinkRecord]) -> list[SinkRecord]:
 
 
 def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
-    """Yield the flows into one sink, without flows from sources without topics that add nothing to flows of their line.
+    """Yield the flows into a sink, without flows from topicless sources that add nothing.
 
     A class that registers sources may also be analysed without a caller, and then the topics of its sources are
     unknown.
@@ -65,7 +65,7 @@ def named_first(flows: Iterable[Flow]) -> Iterator[Flow]:
 
 
 def named_sinks_first(flows: Iterable[Flow]) -> Iterator[Flow]:
-    """Yield flows; omit a flow into a sink without topics if the same flow also enters a sink with topics.
+    """Yield flows; omit one into a topicless sink if it also enters a sink with topics.
 
     Both sinks are at the same place, and both flows have the same source. An explicit flow may replace an implicit
     one.

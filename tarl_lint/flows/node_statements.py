@@ -1,4 +1,4 @@
-"""The statement of each node of a value-flow graph, and the statements that lead to it. All flows share the results."""
+"""The statement of each value-flow node, and those that lead to it; shared by all flows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tarl_lint.models.ros.endpoints import SourceRecord
 
 
 class Found(dict[int, Written | None]):
-    """A table from nodes to their statements (None for a node without statement); filled at the first use of a node."""
+    """A table from nodes to their statements (or None), filled at the first use of a node."""
 
     def __init__(self, graph: Graph, texts: Texts) -> None:
         super().__init__()
@@ -33,7 +33,7 @@ class Found(dict[int, Written | None]):
 
 
 class Keys(dict[int, int | None]):
-    """A table from nodes to the `id` of their statement (None without statement); filled at the first use of a node."""
+    """A table from nodes to their statement's `id` (or None), filled at the first use of a node."""
 
     def __init__(self, found: Mapping[int, object | None]) -> None:
         super().__init__()

@@ -111,6 +111,6 @@ class Precedence:
         return {one for number, one in enumerate(self.bits.keys_of) if bits >> number & 1}
 
     def first_of(self, key: int, left: int) -> int | None:
-        """Return a key that precedes `key` and is among `left`, a set of keys given as bits; None if there is none."""
+        """Return a key before `key` that is in `left`, a set of keys given as bits; else None."""
         waiting = self.before.get(key, 0) & left
         return self.bits.keys_of[waiting.bit_length() - 1] if waiting else None

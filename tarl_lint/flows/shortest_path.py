@@ -31,7 +31,7 @@ class ShortestPaths:
         self._rest = _search(ends, formers, statement_of, self._following, self._settled)
 
     def path_from(self, starts: Set[int]) -> tuple[int, ...]:
-        """Return the statements on a shortest path from one of `starts` to an end, in order; empty if none exists."""
+        """Return the statements, in order, of a shortest path from one of `starts`; empty without one."""
         for node in chain(self._settled, self._rest):
             if node in starts:
                 return _statements(node, self._following, self._statement_of)
@@ -45,7 +45,7 @@ def _search(
     following: dict[int, int],
     settled: dict[int, None],
 ) -> Iterator[int]:
-    """Yield nodes in the order in which their costs become final; `following` is the next node on a shortest path."""
+    """Yield nodes in order of final costs; `following` is the next node on a shortest path."""
     cost = dict.fromkeys(ends, 0)
     pending = deque(cost)
     while pending:

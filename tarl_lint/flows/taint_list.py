@@ -1,4 +1,4 @@
-"""The taint list of a flow: its statements in order, each with its role and the kind of its dependence."""
+"""The taint list of a flow: its statements in order, with roles and kinds of dependence."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ class Parts:
         self._entrances: dict[int, Sequence[tuple[int, int, Way]]] = {}
 
     def of(self, nodes: Set[int], known: Part) -> Part:
-        """Return the part of a set of nodes. `known` is the part of a subset of the nodes; it is not changed."""
+        """Return the part of a set of nodes; `known`, the part of a subset, is not changed."""
         news = nodes - known.nodes
         part = known.copy() if known.nodes else Part(precedence=Precedence(bits=self.bits))
         part.nodes = nodes

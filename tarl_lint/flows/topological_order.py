@@ -12,7 +12,7 @@ from tarl_lint.model import Span
 def in_order(
     spans: Mapping[int, Span], precedence: Precedence, first: Collection[int] | None = None
 ) -> list[int]:
-    """Return the keys in an order in which each key follows the keys that precede it, as far as cycles allow.
+    """Return the keys in an order after those that precede them, as far as cycles allow.
 
     A key without predecessors is placed as late as possible, except if it is in `first`. Without `first`, every key
     is placed as early as possible. Keys without a span are ignored.

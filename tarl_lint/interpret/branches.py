@@ -116,7 +116,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
 
 
 def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
-    """Return the initial state at a loop's head: the fixpoint of the loop's last execution in this call context.
+    """Return a loop head's initial state: the fixpoint of its last execution in this call context.
 
     States only grow, from one pass of an outer loop to the next and from one run of an entry point to the next. The
     last fixpoint is therefore below the new one. If nothing has changed, an inner loop needs a single pass.
@@ -273,7 +273,7 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
 def _special_of_manager(
     ctx: Interpreter, manager: Value, names: Sequence[str], given: Sequence[Value], frame: Frame, s: ir.With
 ) -> Value | None:
-    """Call a method of a context manager; None if its class has no such method. The method may be asynchronous."""
+    """Call a context manager's method, which may be asynchronous; None if its class has none."""
     for name in names:
         said = dunder_methods.special(ctx, manager, name, given, frame, s.pos)
         if said is not None:

@@ -307,7 +307,7 @@ def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arg
 def _missing(
     ctx: Interpreter, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
 ) -> Value:
-    """Return the value of a parameter that no argument names: its default, or the arguments in `*` or `**`."""
+    """Return the value of a parameter without a named argument: its default, or from `*` or `**`."""
     value = ctx.store.get((closure, parameter.name)) if parameter.default is not None else None
     result = BOTTOM if value is None else value
     if rest is not None and parameter.kind == "plain":

@@ -26,7 +26,7 @@ Mode = tuple[object, ...]
 
 @dataclass(slots=True, eq=False)
 class Run:
-    """One run of a function in a call context: its arguments, the objects that contain them, its reads, its results."""
+    """A run of a function in a call context: arguments, objects around them, reads, results."""
 
     passed: Arguments
     parts: tuple[Origin, ...]
@@ -49,7 +49,7 @@ class Run:
 def run(
     ctx: Interpreter, frame: Frame, passed: Arguments, parts: tuple[Origin, ...], execute: Callable[[], Delta]
 ) -> Run:
-    """Return the last run of a frame if a new run would give the same result; otherwise execute the frame."""
+    """Return a frame's last run if a new one would give the same; otherwise execute the frame."""
     mode = _mode(ctx)
     last = frame.recorded
     same = isinstance(last, Run) and last.parts == parts and _same(ctx, last, passed, mode)
@@ -130,13 +130,13 @@ def _raised(run: Run) -> dict[tuple[int, str], Value]:
 
 
 def _left(ctx: Interpreter, run: Run, key: Key) -> Value | None:
-    """Return the value of a key after a run. If a field was unset before the run, clearing it makes no difference."""
+    """Return a key's value after a run; clearing a field that was unset makes no difference."""
     value = run.delta.get(key)
     return None if value is ABSENT and ctx.store.peek(key) is None else value
 
 
 def _wait_again(ctx: Interpreter, reads: Reads) -> None:
-    """Repeat the wait of a replayed call: publish the stores before the call that the call did not overwrite."""
+    """Repeat a replayed call's wait: publish the earlier stores that it did not overwrite."""
     worklist.show(ctx, reads.own)
     for key, value in reads.admitted.items():
         ctx.store.take(key, value)

@@ -87,7 +87,7 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame, spreads: bool = Fal
 def _noted(
     ctx: Interpreter, expr: ir.Call, name: str, argument: ir.Expr, value: Value, frame: Frame
 ) -> Value:
-    """Give a number that is passed by keyword its own node, so that queries find the number in the new object."""
+    """Give a number passed by keyword its own node, so that queries find it in the new object."""
     if not ctx.thorough:
         return value
     return literals.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))

@@ -17,7 +17,7 @@ WHOLE: Final = frozenset(
 
 
 def part(ctx: Interpreter, value: Value, classes: Value, number: int) -> Value:
-    """Return the part of an object that the subpattern with a number gets; all its data if the part is not known."""
+    """Return the object's part for the subpattern with a number; all its data if unknown."""
     if classes.pts and all(c.name in WHOLE for c in classes.pts):
         return value
     found = Value(value.deps, consts=BOTTOM.consts) if value.pts else Value(value.deps)

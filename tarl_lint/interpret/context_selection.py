@@ -1,4 +1,4 @@
-"""Select the context of a call: one of its own, or a shared one if the function has too many contexts."""
+"""Select a call's context: its own, or a shared one for a function with too many."""
 
 from __future__ import annotations
 

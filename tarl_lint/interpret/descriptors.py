@@ -25,7 +25,7 @@ def note(ctx: Interpreter, name: str) -> None:
 
 
 def read(ctx: Interpreter, base: Value, value: Value, name: str, frame: Frame, pos: ir.Pos) -> Value | None:
-    """Return an attribute's value, from the descriptors of the classes; None if no class has a descriptor for it.
+    """Return an attribute's value from its descriptor; None if no class has one.
 
     `value` is the attribute without descriptors.
     """
@@ -49,7 +49,7 @@ def computed(ctx: Interpreter, base: Value, name: str, frame: Frame, pos: ir.Pos
 
 
 def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, pos: ir.Pos) -> bool:
-    """Pass a stored value to `__setattr__`, a property or a descriptor. Return whether the class has any of them."""
+    """Pass a value to `__setattr__`, a property or a descriptor; return whether there is any."""
     given = [const(name), value]
     done = _used(ctx, "__setattr__") and (
         dunder_methods.special(ctx, base, "__setattr__", given, frame, pos) is not None
@@ -132,7 +132,7 @@ def _descriptors(ctx: Interpreter, obj: Obj, name: str) -> list[Obj]:
 def _call(
     ctx: Interpreter, descriptor: Obj, name: str, given: list[Value], frame: Frame, pos: ir.Pos
 ) -> Value | None:
-    """Call `__get__` or `__set__` of a descriptor; of a property, its getter or setter. None if it has none."""
+    """Call a descriptor's `__get__` or `__set__`, or a property's function; None without it."""
     if not isinstance(descriptor.info, tuple):
         return dunder_methods.special(ctx, pointer(descriptor), name, given, frame, pos)
     ctx.store.reads.look(descriptor)

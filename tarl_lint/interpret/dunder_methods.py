@@ -49,7 +49,7 @@ def _special_method(ctx: Interpreter, obj: Obj, name: str) -> Value | None:
 
 
 def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:
-    """Return the result of an operator that the analysed class of an operand overloads; None if no class does."""
+    """Return the result of an operator that an operand's class overloads, else None."""
     if len(values) > 2 or not any(o.kind == "instance" for v in values for o in v.pts):
         return None
     operator = expr.operator
@@ -70,7 +70,7 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
 
 
 def as_text(ctx: Interpreter, value: Value, frame: Frame, pos: ir.Pos) -> Value:
-    """Return the text that an f-string makes of a value, by the method of an analysed class if it has one."""
+    """Return the text of a value in an f-string, by its analysed class's method if there is one."""
     if not any(o.kind == "instance" for o in value.pts):
         return value
     for name in TEXTS:

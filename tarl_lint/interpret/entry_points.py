@@ -116,7 +116,7 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
 
 
 def _passed_by_others(ctx: Interpreter, cls: Obj, statement: ir.Class, module: Obj) -> bool:
-    """Return whether other code may make objects of a class and pass them on, or may pass objects to the class.
+    """Return whether other code may pass on objects of a class, or pass objects to it.
 
     Other code is code outside the files. If a class annotates a parameter, other code is assumed to pass objects of
     this class or of its most derived subclasses. It may also pass objects of the analysed files to the constructor

@@ -13,7 +13,7 @@ from tarl_lint.models.ros import publications
 
 
 def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delta] | None = None) -> None:
-    """Pass an exception to the function's handlers that may catch it, and to the caller unless one certainly does.
+    """Pass an exception to the handlers that may catch it, and to the caller unless one must.
 
     A `finally` on the way is executed first (`try_statements.py`). `states` holds the states that earlier exceptions
     passed on at the same point; exceptions share these states. Its keys are the numbers of layers below.
@@ -34,7 +34,7 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delt
 
 
 def _state(ctx: Interpreter, depth: int, states: dict[int, Delta]) -> Delta:
-    """Return the state that an exception passes on. It lacks the new object if the exception leaves an `__init__`.
+    """Return an exception's state, without the new object if it leaves an `__init__`.
 
     Nothing refers to this object, unless its `__init__` has stored it elsewhere before.
     """
@@ -71,7 +71,7 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 
 
 def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
-    """Make the rest of the function, or of an iteration of a `while`, depend on the event for which a call waits.
+    """Make the rest of a function, or of a `while` iteration, depend on the event of a waiting call.
 
     The rest of the callers depends on the event, too. If the call is in a `while` with a condition, statements after
     this loop do not, just as they do not depend on the condition.
@@ -87,7 +87,7 @@ def may_wait(ctx: Interpreter, decides: Nodes, frame: Frame) -> None:
 
 
 def _expected(ctx: Interpreter, frame: Frame) -> str:
-    """Return the exception, such as a class of tf2, that the innermost `try` expects from a failing library call.
+    """Return the exception that the innermost `try` expects from a library call, such as of tf2.
 
     Return UNKNOWN if its handlers name no class of a library.
     """

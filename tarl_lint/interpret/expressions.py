@@ -73,7 +73,7 @@ def holder(expr: ir.Name, frame: Frame) -> Obj:
 
 
 def global_name(ctx: Interpreter, name: str, frame: Frame) -> Value:
-    """Return the value of a name that the module does not bind: it comes from `import *`, or else it is a builtin."""
+    """Return the value of a name that the module does not bind: from `import *`, or a builtin."""
     value = ctx.store.get((frame.module, name))
     if value is None:
         value = heap.opened(ctx, frame.module, name)
@@ -148,7 +148,7 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
 
 
 def by_key(ctx: Interpreter, base: Value, index: Value, frame: Frame, slot: Hashable) -> Nodes:
-    """Return the node that decides what a look-up in a mapping finds; empty if no data decides the mapping's keys.
+    """Return the node that decides a look-up in a mapping; empty if no data decides the keys.
 
     An entry with a constant key exists whatever the other keys are.
     """
@@ -202,7 +202,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
 
 
 def _default_keys(ctx: Interpreter, obj: Obj, index: Value) -> frozenset[str]:
-    """Return the defaults of a key that is known only on the robot, if the mapping has an entry for each default."""
+    """Return a key's defaults (known only on the robot), if the mapping has an entry for each."""
     defaults = index.default_keys() if obj.kind == "mapping" else frozenset[str]()
     held = ctx.store.get((obj, GIVEN_KEYS)) if defaults else None
     stored = held.consts if held is not None else None
@@ -270,7 +270,7 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
 def under_guard(
     ctx: Interpreter, expr: ir.Expr, guard: tuple[int, str], test: ir.Expr, frame: Frame
 ) -> Value:
-    """Evaluate an expression that is executed only for one outcome of a decision; its value depends on the decision."""
+    """Evaluate an expression executed for one outcome of a decision, on which its value depends."""
     ctx.guards.append(guard)
     former = ctx.ops.narrow_part(ctx, test, frame, holds=guard[1] == "then")
     value = evaluate(ctx, expr, frame)

@@ -140,7 +140,7 @@ class Linker(Interpreter):
         return 1 if root.kind != "module" else 0 if took is None else 2, took or 0, root.number
 
     def _reconsider(self) -> None:
-        """Queue the roots that ignored a node because no source reached the node, if a source reaches it now."""
+        """Queue the roots that ignored an unreached node which a source reaches now."""
         for node in [n for n in self.doubts if n in self.graph.live]:
             self.pending.update(self.doubts.pop(node))
 

@@ -1,4 +1,4 @@
-"""Generators advanced by `send` or `next`: the code that advances one runs the statements up to the next `yield`.
+"""Generators advanced by `send` or `next`, which run the statements up to the next `yield`.
 
 The body of a generator is executed once, when it is made, with all values that are ever sent. Its caller may go on at
 every `yield`, and the rest of the body may never run.
@@ -25,7 +25,7 @@ def mailbox(ctx: Interpreter, frame: Frame) -> Obj:
 
 
 def send(ctx: Interpreter, generator: Obj, value: Value) -> None:
-    """Send a value to a generator; the roots that have executed its body run again if the value is new.
+    """Send a value to a generator; a new value makes the roots of its body run again.
 
     A root that runs again does not see its own stores. For this reason, `ctx.posted` holds the data that each root
     sends.

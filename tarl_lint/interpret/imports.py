@@ -11,7 +11,7 @@ from tarl_lint.read.source import Module
 
 
 def imported(ctx: Interpreter, module: str, member: str | None, importer: object) -> Value:
-    """Return the value that an import binds: an analysed module, a name of such a module, or a library name."""
+    """Return the value that an import binds: an analysed module or its name, or a library name."""
     assert isinstance(importer, Module)  # noqa: S101 - the callers pass modules
     found = _module(ctx, module, importer)
     if member is None:

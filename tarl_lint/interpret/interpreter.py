@@ -141,7 +141,7 @@ class Interpreter:
 
     @property
     def launching(self) -> bool:
-        """Return whether the run is for a launch file, in which names depend on the node and clients have servers."""
+        """Return whether the run is for a launch file: names depend on nodes, clients have servers."""
         return self.parameter_names is not None
 
     @property
@@ -163,11 +163,11 @@ class Interpreter:
 
     @property
     def exact(self) -> bool:
-        """Return whether the run is for one launched node. In such a run, constants are followed one by one."""
+        """Return whether the run is for one launched node, so that constants are followed singly."""
         return self.launched is not None or bool(self.command_line)
 
     def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> tuple[Hashable, ...]:
-        """Return the key of a flow's end. For a launch, it includes call context and iteration of an unrolled loop."""
+        """Return a flow end's key; for a launch, with call context and unrolled loop iteration."""
         return (path, pos, frame.id, *frame.turn) if self.launching else (path, pos)
 
     def source_key(
@@ -206,7 +206,7 @@ class Interpreter:
         return spent
 
     def note_import(self, found: Module, importer: Module) -> None:
-        """Charge the roots of an imported file to the programs that import it, unless the file is itself a program."""
+        """Charge an imported file's roots to importing programs, unless it is itself a program."""
         importers = self.work.importers.setdefault(found.path, {})
         if importer.path in importers or importer is found or importer.name.startswith(f"{found.name}."):
             return
@@ -276,7 +276,7 @@ class Interpreter:
         return [*found, self.branch(frame, (loop.id, "body"), around)]
 
     def branch(self, frame: Frame, branch: Branch, turns: Turns | None = None) -> tuple[int, str]:
-        """Return a branch of a function as seen in one of its frames, and in iterations of unrolled loops."""
+        """Return a branch of a function in one of its frames and unrolled loop iterations."""
         number, way = branch
         turns = frame.turns if turns is None else turns
         if turns:
@@ -362,7 +362,7 @@ class Interpreter:
         return Value(frozenset([node]), value.pts, value.consts)
 
     def kept(self, node: int) -> Nodes:
-        """Return a node as dependency of a value; empty if no source reaches it or its decisions (unless thorough)."""
+        """Return a node as dependency; empty if no source reaches it or its decisions (unless thorough)."""
         return frozenset([node]) if self.thorough else self.reached(node)
 
     def reached(self, node: int) -> Nodes:

@@ -14,7 +14,7 @@ KINDS: Final = frozenset(["builtins.type", "abc.ABCMeta", "enum.EnumMeta", "enum
 
 
 def of(cls: Obj, given: Value | None) -> Obj | None:
-    """Return the analysed metaclass that a class statement names, or that a base class has; None if there is none."""
+    """Return the analysed metaclass of a class statement or its base class, or None."""
     named = next((o for o in given.objects if o.kind == "class"), None) if given is not None else None
     above = (base.info.metaclass for base in lineage(cls)[1:] if isinstance(base.info, ClassInfo))
     return named or next((one for one in above if one is not None), None)

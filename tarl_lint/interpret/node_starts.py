@@ -1,4 +1,4 @@
-"""Find code that starts a node by its syntax. A file without such code defines names and does nothing else."""
+"""Find code that starts a node by its syntax; other files only define names."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def starts(function: ir.Function) -> bool:
 
 
 def _holds(node: ast.AST) -> bool:
-    """Return whether an expression is a method that registers something, or the name of such a method for `getattr`."""
+    """Return whether an expression is a registering method, or its name for `getattr`."""
     if isinstance(node, ast.Attribute):
         return node.attr in HELD
     return isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in HELD

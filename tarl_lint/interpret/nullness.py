@@ -17,7 +17,7 @@ COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)
 
 
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
-    """Return the nodes that decide `x is None` if the test only checks whether x is set, else None.
+    """Return the nodes that decide `x is None` if only this is tested, else None.
 
     Whether a message has arrived does not count as data, but the conditions under which it was stored do.
     """
@@ -66,7 +66,7 @@ def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame
 def note_taken(
     ctx: Interpreter, target: ir.Expr, held: Value, number: int, value: Value, frame: Frame
 ) -> None:
-    """Record a target that gets an element of a sequence, if the element is None only before the first message."""
+    """Record a target whose sequence element is None only before the first message."""
     keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
     for key in keys:
         ctx.store.reads.ask(ctx.nullness.of_key, key)
@@ -121,7 +121,7 @@ def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
 
 
 def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
-    """Yield the keys of a variable or field; for a field of an instance, also those of the field in the classes."""
+    """Yield a variable's or field's keys; for an instance's field, also those in its classes."""
     if isinstance(expr, ir.Name):
         yield ctx.ops.holder(expr, frame), expr.name
     elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):

@@ -55,7 +55,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def launched_call(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value | None:
-        """Model a call that makes or uses a client of a service or action, or names the node; None for other calls."""
+        """Model a call that makes or uses a service or action client, or names the node; else None."""
         ...
 
     def call_later(self, ctx: Ctx, target: Obj, values: Sequence[Value]) -> None:
@@ -132,7 +132,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def imported(self, ctx: Ctx, module: str, member: str | None, importer: object) -> Value:
-        """Return the value that an import binds: an analysed module, a name of such a module, or a library name."""
+        """Return the value that an import binds: an analysed module or its name, or a library name."""
         ...
 
     def may_fail(self, ctx: Ctx, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
@@ -140,7 +140,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def may_wait(self, ctx: Ctx, decides: Nodes, frame: Frame) -> None:
-        """Make the rest of the function, or of a loop's iteration, depend on the event for which a call waits."""
+        """Make the rest of a function, or of a loop iteration, depend on the event of a waiting call."""
         ...
 
     def missing(self, ctx: Ctx, mapping: Obj, name: str) -> Value:

@@ -157,7 +157,7 @@ def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> 
 
 
 def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
-    """Return a node that depends on the decisions to add elements to containers, but not on the elements' data."""
+    """Return a node of the decisions to add container elements, without the elements' data."""
     node = ctx.node(frame, slot, "condition")
     ctx.graph.choice(sizes.placed(ctx, objects), node)
     return ctx.kept(node)
@@ -302,7 +302,7 @@ def _fold_text(values: list[Value]) -> frozenset[object] | None:
 
 
 def _symbolic(results: frozenset[object]) -> frozenset[object] | None:
-    """Mark the results of an operator on strings that the launch determines; None if a result is not a string."""
+    """Mark an operator's results on strings of the launch; None if a result is no string."""
     if not all(isinstance(one, str) for one in results):
         return None
     return frozenset(Symbolic(one) for one in results)

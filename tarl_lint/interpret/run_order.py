@@ -71,7 +71,7 @@ class Group(Generic[P]):
 
 @dataclass(frozen=True, slots=True)
 class Dependence(Generic[P]):
-    """`part` runs only after some outcomes of `decider`; if any member of a fork may decide, `outcomes` is None."""
+    """`part` runs after some outcomes of `decider`; `outcomes` is None if any fork member decides."""
 
     part: P
     decider: P

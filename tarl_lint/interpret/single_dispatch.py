@@ -26,7 +26,7 @@ def note(ctx: Interpreter, decorator: ir.Expr, given: Sequence[Value], made: Val
 
 
 def chosen(ctx: Interpreter, targets: list[Obj], arguments: Arguments) -> list[Obj]:
-    """Return the implementations that a call may run; all of them if the type of the argument is not known."""
+    """Return the implementations that a call may run; all for an unknown argument type."""
     known = _types(ctx, arguments[0][0]) if arguments[0] else None
     return targets if known is None else for_types(ctx, targets, known)
 
@@ -53,7 +53,7 @@ def for_types(ctx: Interpreter, targets: list[Obj], known: Sequence[Sequence[str
 
 
 def _types(ctx: Interpreter, value: Value) -> list[list[str]] | None:
-    """Return the names of the possible types, each with the names of its base classes; None if they are not known."""
+    """Return the possible type names, each with its base classes; None if unknown."""
     if not value.pts or value.consts not in (None, NO_CONSTANTS):
         return None
     ctx.look(value.pts)

@@ -31,7 +31,7 @@ class NullnessFacts:
     )
 
     def of_key(self, key: Key | None) -> tuple[bool, bool, int]:
-        """Return the facts about a variable or field; without a key, whether any value may be None because of data."""
+        """Return the facts about a key; without one, whether data may make any value None."""
         if key is None:
             return False, bool(self.optional), 0
         return key in self.vacant, key in self.optional, len(self.came.get(key, ()))

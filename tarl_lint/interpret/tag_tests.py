@@ -21,7 +21,7 @@ Tags = frozenset[object]  # constants, and members of enumerations
 
 @dataclass(frozen=True)
 class Test:
-    """The condition that an expression is, or is not, one of several tags or an instance of one of several classes."""
+    """The condition that an expression is, or is not, one of some tags or of some classes."""
 
     expr: ir.Expr
     tags: Tags

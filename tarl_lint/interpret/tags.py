@@ -1,4 +1,4 @@
-"""Tags: in the branches of an `if` that tests a tag, variables hold only the objects with a matching tag.
+"""Tags: in an `if` that tests one, variables hold only the objects with a matching tag.
 
 A tag tells objects of different kinds apart, as in `kind, value = queue.get()` with `if kind == "stop"`: the first
 element of a tuple, an entry of a mapping, an attribute, or the class of an object. Local variables that got their
@@ -42,7 +42,7 @@ def note(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, slot:
 def note_element(
     ctx: Interpreter, target: ir.Expr, whole: Value, number: int, slot: str, frame: Frame
 ) -> None:
-    """Record that the current statement assigned an element of a value to a variable, or the rest of its elements."""
+    """Record that a statement assigned an element, or the other elements, of a value to a variable."""
     if isinstance(target, ir.Starred):
         if isinstance(target.value, ir.Name) and several(whole):
             _remember(ctx, target.value, whole, REST, slot, frame)
@@ -119,7 +119,7 @@ def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, hold
 
 
 def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, Delta]]) -> None:
-    """After both branches of an `if`, restore the value of each narrowed variable to which no branch has assigned."""
+    """After an `if`, restore each narrowed variable that no branch has assigned."""
     for key, value in before.items() if len(ways) > 1 else ():
         if all(key not in state or state[key] is narrowed.get(key) for narrowed, state in ways):
             ctx.store.put(key, value)
@@ -210,7 +210,7 @@ def taken_from(ctx: Interpreter, key: Key, frame: Frame) -> Taken | None:
 
 
 def _with(ctx: Interpreter, key: Key, now: Value, kept: frozenset[Obj], frame: Frame) -> Value:
-    """Return the value of a variable if it is one of some objects, or was taken from one of these objects."""
+    """Return a variable's value if it is, or was taken from, one of some objects."""
     taken = taken_from(ctx, key, frame)
     if taken is None:
         return Value(now.deps, kept, now.consts)
@@ -239,7 +239,7 @@ def _only(ctx: Interpreter, value: Value, kept: frozenset[Obj], frame: Frame) ->
 
 
 def whole_of(value: Value, frame: Frame) -> tuple[Frame, Key, Taken] | None:
-    """Return the variable of a function or its callers that has a value, and the value's origin; None without one."""
+    """Return the variable, here or in callers, with a value, and its origin; None without one."""
     place: Frame | None = frame
     while place is not None:
         for key, known in place.taken.items():
@@ -294,7 +294,7 @@ def _matches(ctx: Interpreter, obj: Obj, field: str | Value, test: Test) -> bool
 
 
 def _of_classes(obj: Obj, classes: Value, *, holds: bool) -> bool:
-    """Return whether an object is possibly an instance of one of the given classes, and whether it possibly is not."""
+    """Return whether an object may be, and may not be, an instance of one of the classes."""
     if holds:
         return obj in operators.narrowed(Value(pts=frozenset([obj])), classes).pts
     if obj.kind != "instance" or not isinstance(obj.info, Obj):

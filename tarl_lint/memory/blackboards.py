@@ -1,4 +1,4 @@
-"""The blackboard of py_trees: all clients share its keys, and each client sees the keys below its own namespace."""
+"""The blackboard of py_trees: clients share its keys and see those below their namespace."""
 
 from __future__ import annotations
 

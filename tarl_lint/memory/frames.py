@@ -35,7 +35,7 @@ class Attempt:
         return True if True in answers else None if None in answers else False
 
     def names(self, name: str, types: ExceptionTypes) -> bool:
-        """Return whether one of the handlers catches a builtin exception by its name, or by that of a base class."""
+        """Return whether a handler catches a builtin exception, by its or a base class's name."""
         return any(types.names(handled, name) for handled in self.handlers)
 
     def caught(self, handled: Handled, types: ExceptionTypes) -> dict[str, Value]:
@@ -45,7 +45,7 @@ class Attempt:
 
 @dataclass(slots=True, eq=False)
 class Escape:
-    """An exception that leaves a function: its place, name and value, and the decision of the call that raised it.
+    """An exception that leaves a function: its place, name, value, and the raising call's decision.
 
     `state` has the stores of the function before the exception.
     """
@@ -75,7 +75,7 @@ REST: Final = "<rest>"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Taken:
-    """The origin of a variable's value: the statement, and the objects that the value may be, or may be a part of.
+    """A variable value's origin: the statement, and the objects that it may be or be a part of.
 
     `field` is the attribute or index of the part, or REST; `of` is the variable that holds the objects.
     """

@@ -1,4 +1,4 @@
-"""Chains of instances, each made by a method of the previous one (`position = position + step`), and of closures.
+"""Chains of instances, each made by a method of the previous one, and chains of closures.
 
 A method has a separate context for each receiver, and each context makes objects of its own. Suppose a callback
 replaces an object with a new one that a method of the object makes. Without a limit, the analysis would then make
@@ -26,7 +26,7 @@ Chain = tuple[tuple[Hashable, Obj], ...]
 
 
 def last_of_line(ctx: Interpreter, site: Hashable, frame: Frame) -> Obj | None:
-    """If the chain of makers is too long, return the object that represents all that the site makes now; else None."""
+    """Return the object that represents all of a site if its chain of makers is too long, else None."""
     alike = [obj for known, obj in _makers(ctx, frame) if known == site]
     if len(alike) < MAX_ALIKE:
         return None

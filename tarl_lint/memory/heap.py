@@ -202,7 +202,7 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
 
 
 def through_class(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value | None:
-    """Return an attribute that a class or base class defines, with its functions bound to `obj`; None if none does."""
+    """Return an attribute of a class or base class, with functions bound to `obj`, else None."""
     for owner in lineage(cls):
         value = ctx.store.get((owner, name))
         if value is not None:
@@ -365,7 +365,7 @@ def elements(ctx: Interpreter, value: Value) -> Value:
 
 
 def attribute_names(ctx: Interpreter, obj: Obj) -> Value | None:
-    """Return the names over which a loop over `vars(obj)` iterates; None if a loop over the object has other elements.
+    """Return the names of a loop over `vars(obj)`; None if a loop over `obj` has other elements.
 
     `vars(obj)` and `obj.__dict__` are represented by the object itself. If a class or base class of the object is
     not analysed, or the object has attributes with computed names, it may iterate in another way.
@@ -396,7 +396,7 @@ def keys(ctx: Interpreter, mapping: Obj, carriers: Nodes) -> Value:
 
 
 def _texts(ctx: Interpreter, mapping: Obj) -> Value:
-    """Return the keys of a mapping if all of them are known texts, such as the topics in a table."""
+    """Return a mapping's keys if all are known texts, such as the topics in a table."""
     ctx.store.look(mapping)
     names = [n for n in list(mapping.fields) if n.startswith("[")]
     ctx.graph.asked += len(names)

@@ -22,7 +22,7 @@ KINDS: Final = frozenset(["message", "lib", "ext"])  # kinds of objects that may
 
 
 def type_of(ctx: Interpreter, obj: Obj) -> str:
-    """Return the type of a message or of a part of one, without its package; "" if it is not known."""
+    """Return the type of a message or of its part, without package; "" if unknown."""
     outer = obj.parent
     if outer is None:
         ctx.look([obj])
@@ -63,7 +63,7 @@ def of_ros2(ctx: Interpreter) -> bool:
 
 
 def field(ctx: Interpreter, value: Value, name: str) -> str:
-    """Return the field that a name stands for: in ROS 2, `_x` stands for the field x of a message."""
+    """Return the field that a name stands for: in ROS 2, x for `_x`."""
     plain = name[1:] if name.startswith("_") else name
     known = plain != name and value.pts and all(o.kind in KINDS for o in value.pts)
     return plain if known and all(plain in field_names(ctx, o) for o in value.pts) else name

@@ -22,7 +22,7 @@ def is_property(function: ir.Function) -> bool:
 
 
 def part(ctx: Interpreter, getter: Obj, name: str) -> Value | None:
-    """Return the getter or setter of a property, whose getter is a function in a class; None for other functions."""
+    """Return a property's getter or setter, if the getter is in a class; None for others."""
     function, _, _, owner = getter.info if isinstance(getter.info, tuple) else (None,) * 4
     if owner is None or (name == "__get__" and not is_property(function)):
         return None

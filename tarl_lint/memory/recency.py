@@ -75,7 +75,7 @@ def single(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def one_of_many(ctx: Interpreter, obj: Obj) -> None:
-    """Let an object stand for several objects, for example for all objects of its site if callbacks refer to it."""
+    """Let an object stand for several, such as all of its site if callbacks refer to it."""
     if not obj.many:
         obj.many = True
         ctx.shared.several.add(obj)

@@ -1,4 +1,4 @@
-"""The stores of all roots: the values that each root leaves for other roots, and the roots that read these values."""
+"""The stores of all roots: the values left for other roots, and the roots that read them."""
 
 from __future__ import annotations
 

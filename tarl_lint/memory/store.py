@@ -125,7 +125,7 @@ class Store:
         return value
 
     def former(self, key: Key, made: Made) -> Value | None:
-        """Return the current value of a key to which another path stores, for the join with the value of that path.
+        """Return the current value of a key that another path stores, for the join with that value.
 
         If this run creates the object only on other paths, every run creates an object of its own. As long as only
         joins read the object's keys, the run's own stores to them do not make the root run again. `made` caches the
@@ -180,7 +180,7 @@ class Store:
         return self.elsewhere[key]
 
     def found_by(self, reads: Reads) -> tuple[dict[Key, Value | None], dict[Key, bool]]:
-        """Return the current values of the keys read and, for the keys in `stored`, whether this run stored to them."""
+        """Return the current values of read keys and, for keys in `stored`, whether this run stored."""
         now, found, one = self.now, self.found, self.shared.one
         values: dict[Key, Value | None] = {}
         for key in reads.keys:

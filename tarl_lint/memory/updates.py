@@ -107,7 +107,7 @@ def _default_key(ctx: Interpreter, base: Value, index: Value) -> frozenset[str]:
 
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
-    """Store into one of several elements: under a known key of a mapping, into that element; else into any element."""
+    """Store into a mapping's element under a known key, else into any of several elements."""
     constants = index.item_keys() or ()
     known = sorted(constants, key=repr) if len(constants) <= MAX_KEYS else []
     mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known)

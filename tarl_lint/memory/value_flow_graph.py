@@ -307,7 +307,7 @@ class Graph:
         return self.made > MAX_NODES
 
     def _consult(self, carriers: Nodes) -> None:
-        """Record a dependency on the number of nodes passed on by each carrier, and by the carriers of the carriers."""
+        """Record a dependency on the numbers of nodes passed on by carriers and by their carriers."""
         noted, held, carried = self.reads.held, self.held, self.carried
         for carrier in carriers:
             while carrier not in noted:
@@ -348,7 +348,7 @@ class Graph:
         self.ways_through.clear()
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
-        """Return an item as passed on by one carrier; empty if the item was not yet inside the object at that time."""
+        """Return an item as passed on by a carrier; empty if it was not in the object at that time."""
         parts = self.carried.get(carrier)
         if parts is None:
             return {self._carry(carrier, item)} if item in self.held.get(carrier, ()) else set()

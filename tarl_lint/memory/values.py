@@ -308,7 +308,7 @@ def const(value: object) -> Value:
 
 @dataclass(slots=True, eq=False)
 class ClassInfo:
-    """A class of the analysed files. It is `opaque` if one of its base classes is not among the analysed files."""
+    """A class of the analysed files; `opaque` if a base class is not in them."""
 
     name: str
     qualname: str

@@ -109,7 +109,7 @@ def _as_the_library(declared: list[Declared], texts: list[str]) -> tuple[argpars
 
 
 def _texts(ctx: Interpreter, it: Invocation) -> list[str] | None:
-    """Return the arguments to parse: those of the call, or else those of the launched node that are not for ROS."""
+    """Return the arguments to parse: the call's, else the launched node's without those for ROS."""
     if not ctx.command_line:
         return None
     given = it.arguments[0][:1] or [it.arguments[1][name] for name in ("args",) if name in it.arguments[1]]

@@ -60,7 +60,7 @@ def _nested(ctx: Interpreter, values: Iterable[Value]) -> list[Obj]:
 
 
 def notify(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Let an object of a library call the observers that it gets now, with the data that it has or gets later.
+    """Let a library object call the observers that it gets, with its present and later data.
 
     The object itself represents this data.
     """
@@ -156,7 +156,7 @@ def returned(
 
 
 def _opaque(ctx: Interpreter, arguments: Arguments, base: Value, called: Set[Obj] = frozenset()) -> Value:
-    """Return a value that a library may pass to a callable: data of all arguments, and any message or object in them.
+    """Return what a library may pass to a callable: all arguments' data and any object in them.
 
     If the library calls an instance, this instance is left out, since it is the callee and not an argument.
     """

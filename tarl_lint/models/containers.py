@@ -154,7 +154,7 @@ def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> No
 
 
 def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
-    """Return the list index at which this iteration of an unrolled loop appends an element; None if it is not known."""
+    """Return the list index at which an unrolled iteration appends; None if unknown."""
     if len(values) != 1 or frame.statement not in frame.steps:
         return None
     known = sizes.unpacked(ctx, base)
@@ -208,14 +208,14 @@ def flag(ctx: Interpreter, it: Invocation) -> None:
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
-    """Write to a port, file or socket. The object stores the data, but a read from it does not return this data."""
+    """Write to a port, file or socket; a read from it does not return this data."""
     news = through_statement(ctx, join_all(plain), frame, call) if plain else BOTTOM
     for obj in base.objects if news is not BOTTOM else ():
         updates.weaken(ctx, obj, SENT, news)
 
 
 def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
-    """Return the dependencies of a read from a port, file or socket. Data written to the object is left out."""
+    """Return the dependencies of a read from a port, file or socket, without written data."""
     deps = base.deps | call_contexts.all_used(ctx, arguments)
     for obj in base.objects:
         deps |= heap.content(ctx, obj).deps
@@ -287,7 +287,7 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _from_queue(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an element of a queue, or an entry of a mapping. For a queue, the call waits for the element."""
+    """Return an element of a queue (for which the call waits), or an entry of a mapping."""
     if not it.base.pts or any(o.kind != "sequence" for o in it.base.pts):
         return _read_get(ctx, it)
     if any(it.arguments):
@@ -381,7 +381,7 @@ def elements_of_any(ctx: Interpreter, base: Value) -> Value:
 
 
 def _known_entries(ctx: Interpreter, it: Invocation) -> Sequence[tuple[Value, Value]] | None:
-    """Return the keys and values of a mapping in order, if they are certain: for parameters, or the body of a class."""
+    """Return a mapping's certain keys and values in order, for parameters or class bodies; else None."""
     told = launched.entries(ctx, it.base)
     return told if told is not None else rows.attributes(ctx, it.base)
 

@@ -17,7 +17,7 @@ CONTAINERS: Final = frozenset(["sequence", "mapping"])
 
 
 def replaceable(ctx: Interpreter, default: Value, frame: Frame, slot: Hashable) -> Value | None:
-    """Return a copy of a list or mapping in which all texts are defaults: the actual texts are known only on the robot.
+    """Return a copy of a list or mapping with its texts as defaults, replaceable on the robot.
 
     Numbers in the copy are unknown. Return None for other values, and for empty and large containers.
     """

@@ -1,4 +1,4 @@
-"""Drawings of matplotlib: whatever is drawn into a part of a figure is also in the figure and in its image.
+"""Drawings of matplotlib: what is drawn into a part is also in the figure and its image.
 
 Axes, lines and canvases refer to their figure, and the functions of `pyplot` to the current one. One object
 therefore represents all of them, even if a program has several figures. Each program that is run has its own

@@ -1,4 +1,4 @@
-"""Arguments that libraries fill: lists and arrays that are passed to a call whose result is not used, and streams."""
+"""Arguments that libraries fill: streams, and containers passed to a call without used result."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def fill(ctx: Interpreter, it: Invocation, *, dropped: bool) -> None:
 
 
 def pass_on(ctx: Interpreter, it: Invocation) -> None:
-    """Let an object that writes into a stream in memory, such as a `ZipFile`, pass on the data that its method gets."""
+    """Let a writer into a memory stream, such as a `ZipFile`, pass on its method's data."""
     streams = join_all(held for obj in it.base.objects if (held := ctx.store.get((obj, STREAM))) is not None)
     if streams.pts and not reads(it.name):
         news = Value(call_contexts.all_used(ctx, it.arguments))

@@ -191,7 +191,7 @@ def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Node
 
 
 def next_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an element of an iterator. If the call has a default, whether there is an element decides the result."""
+    """Return an iterator's element; with a default, the existence of an element decides the result."""
     plain = it.arguments[0]
     element = heap.elements(ctx, plain[0])
     if len(plain) == 1:

@@ -51,7 +51,7 @@ def made(ctx: Interpreter, value: Any, frame: Frame, slot: Hashable) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value | None:
-    """Model a call that asks whether a parameter is set, or that parses a known text; None for other calls."""
+    """Model a call that asks for a parameter's presence or parses a known text; else None."""
     given = it.arguments[0]
     if ctx.launched is None or not given:
         return None
@@ -89,7 +89,7 @@ def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
 
 
 def entry(ctx: Interpreter, base: Value, key: Value) -> Value | None:
-    """Return the entry of a mapping that the launch gives; None for other objects, and if there is no such entry."""
+    """Return an entry of a mapping from the launch; None for other objects or without entry."""
     known, constant = key.constant()
     obj = next(iter(base.pts)) if len(base.pts) == 1 else None
     if not known or obj is None or obj.kind != "mapping" or obj.name != GIVEN:

@@ -84,7 +84,7 @@ def call_method(
 
 
 def _of_kind(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
-    """Call a method of a message, a blackboard's client or a logger, or one that adds a part; None for others."""
+    """Call a method of a message, blackboard client or logger, or one adding a part; else None."""
     if it.name == "get_fields_and_field_types" and target.kind in message_types.KINDS:
         return reflection.fields_and_types(ctx, it)
     if it.name == "wait_for":
@@ -232,7 +232,7 @@ def _of_text(
 
 
 def _fields(ctx: Interpreter, base: Value, name: str) -> Nodes:
-    """Return the data in the fields of instances, if a library's base class has a method that returns all fields."""
+    """Return an instance's field data, if a library base class's method returns all fields."""
     found = NONE
     for obj in base.objects if returns_all(name) else ():
         if obj.kind == "instance":

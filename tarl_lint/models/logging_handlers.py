@@ -29,7 +29,7 @@ DESCRIBING: Final = ("levelname", "levelno", "name", "lineno", "pathname", "func
 
 
 def named_logger(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the logger with this name; without a name, the root logger. All files share the logger of a name."""
+    """Return the logger with this name (shared by all files), or the root logger without one."""
     given = it.arguments[0][:1]
     texts = given[0].texts() if given else ("",)
     return pointer(_logger(ctx, texts[0] if len(texts) == 1 else "?"))
@@ -40,7 +40,7 @@ def _logger(ctx: Interpreter, name: str) -> Obj:
 
 
 def call(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
-    """Call a method of a logger, or the method that sets a handler's level; None for other methods and objects."""
+    """Call a logger's method, or the method that sets a handler's level; None for others."""
     plain = it.arguments[0]
     if it.name == "setLevel" and plain and target.kind == "instance":
         note_level(ctx, target, it.arguments)

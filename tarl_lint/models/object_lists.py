@@ -14,7 +14,7 @@ from tarl_lint.models import sizes
 
 
 def place(ctx: Interpreter, base: Value, news: Sequence[Value]) -> int | None:
-    """Return the index of the first of the objects that a call appends to a list; None if the order is not known."""
+    """Return the index of the first object that a call appends to a list; None if unknown."""
     if len(base.pts) != 1 or not news or not all(map(is_object, news)):
         return None
     (obj,) = base.pts
@@ -34,7 +34,7 @@ def is_object(element: Value) -> bool:
 
 
 def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
-    """Return whether each element of a loop is an object, an integer, or a tuple of objects and perhaps constants."""
+    """Return whether all loop elements are objects, integers, or tuples of objects and constants."""
     for element in elements:
         parts = sizes.unpacked(ctx, element) or [element]
         known = all(is_object(part) or part.fixed() for part in parts)
@@ -44,7 +44,7 @@ def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
 
 
 def without_empty(ctx: Interpreter, source: Value) -> Value:
-    """Return a value without empty lists and tuples if it may also be a list with elements, as in `children or []`."""
+    """Return a value without empty lists, if it may be a full one, as in `children or []`."""
     if len(source.pts) < 2 or any(o.kind != "sequence" for o in source.pts):
         return source
     full = frozenset(o for o in source.pts if not sizes.is_empty(ctx, pointer(o)))

@@ -70,7 +70,7 @@ def _inside(ctx: Interpreter, parts: Value, it: Invocation, depth: int = 0) -> N
 
 
 def _of_instance(ctx: Interpreter, obj: Obj, elements: Value, it: Invocation) -> Nodes | None:
-    """Return the data that a comparison of an instance uses: by its own `__lt__`, or by the fields of a dataclass."""
+    """Return the data of an instance's comparison: its own `__lt__`, or a dataclass's fields."""
     said = dunder_methods.special(ctx, pointer(obj), "__lt__", [elements], it.frame, it.call.pos)
     if said is not None:
         return ctx.use(said)
@@ -91,7 +91,7 @@ def _decided(ctx: Interpreter, elements: Value, compared: Nodes, it: Invocation)
 
 
 def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return one element of the arguments, chosen by `key=` or by itself, or possibly the default, if there is one."""
+    """Return an element of the arguments, chosen by `key=` or by itself, or perhaps the default."""
     plain, named = it.arguments
     several = [*plain, named["*"]] if "*" in named and plain else plain
     values = [heap.elements(ctx, plain[0])] if len(several) == 1 else several

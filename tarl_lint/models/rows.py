@@ -33,7 +33,7 @@ def hold_classes(ctx: Interpreter, source: Value) -> bool:
 
 
 def parts(value: Value) -> list[Value]:
-    """Return the different objects and constants that a value may be; [] if they are not known or fewer than two."""
+    """Return a value's different objects and constants; [] if unknown or fewer than two."""
     constants = value.keys()
     if not 1 < len(value.pts) + len(constants or ()) <= MAX_ROWS or (constants is None and not value.pts):
         return []

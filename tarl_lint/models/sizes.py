@@ -130,7 +130,7 @@ def _each_sliced(
 
 
 def _between(ctx: Interpreter, base: Value, index: ir.Slice, bounds: list[Value]) -> list[Value] | None:
-    """Return the elements that a slice selects; None if the elements of the base, or the bounds, are not known.
+    """Return the elements of a slice; None if the base's elements or the bounds are unknown.
 
     In a known command line, only constants count as known.
     """
@@ -171,7 +171,7 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
 
 
 def each_unpacked(ctx: Interpreter, value: Value, least: int = 0) -> dict[Obj, list[Value]]:
-    """Return the known elements of each of several sequences; empty if one is not known, or has less than `least`."""
+    """Return the known elements of each sequence; empty if one is unknown or shorter than `least`."""
     if not 1 < len(value.pts) <= MAX_KNOWN or any(o.kind != "sequence" for o in value.pts):
         return {}
     found = {obj: unpacked(ctx, Value(value.deps, frozenset([obj]))) for obj in value.objects}
@@ -195,7 +195,7 @@ def rests(ctx: Interpreter, parts: Mapping[Obj, Sequence[Value]], frame: Frame, 
 
 
 def counted(ctx: Interpreter, source: ir.Expr, frame: Frame, *, each: bool) -> Value:
-    """Evaluate the object over which a loop iterates. If `each` is True, numbers of a `range` and lengths are known."""
+    """Evaluate a loop's object; with `each`, numbers of a `range` and lengths are known."""
     outside, ctx.counting = ctx.counting, frame.statement if each else ctx.counting
     value = ctx.ops.evaluate(ctx, source, frame)
     ctx.counting = outside

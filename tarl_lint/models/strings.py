@@ -49,7 +49,7 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
 
 
 def tested(base: Value, name: str, arguments: Arguments) -> Value | None:
-    """Return whether all texts begin or end with the given text; None if a text is unknown or the results differ."""
+    """Return whether all texts begin or end with a text; None if unknown or mixed."""
     texts, given = base.texts(), [value.constant() for value in arguments[0]]
     if not texts or base.pts or len(given) != 1 or not isinstance(given[0][1], str):
         return None
@@ -113,7 +113,7 @@ def _flat(ways: Sequence[Any]) -> Iterator[Any]:
 
 
 def _known(ctx: Interpreter, value: Value) -> list[Any]:
-    """Return the possible constants of a value, or the lists that it may be; empty if some of them are unknown."""
+    """Return a value's possible constants, or lists; empty if some are unknown."""
     if value.consts and not value.pts:
         return sorted(value.consts, key=str)
     parts = [_known(ctx, e) for e in sizes.unpacked(ctx, value) or ()]
@@ -135,7 +135,7 @@ def as_text(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def as_number(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `int(x)`. The result is a constant in a run for one launched node, where numbers may be part of names."""
+    """Return `int(x)`, a constant for one launched node, where numbers may be in names."""
     known, constant = it.arguments[0][0].constant() if len(it.arguments[0]) == 1 else (False, None)
     if not (ctx.exact and known and isinstance(constant, str | int | float)):
         return ctx.ops.generic(ctx, f"builtins.{it.name}", it.arguments, it.frame, it.call)

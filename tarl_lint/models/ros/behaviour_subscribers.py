@@ -64,7 +64,7 @@ def _entries(ctx: Interpreter, it: Invocation, arriving: Value) -> Iterator[tupl
 
 
 def _field(ctx: Interpreter, message: Value, path: Value) -> Value:
-    """Return a field of a message by its path, such as `pose.position`; the whole message if the path is not known."""
+    """Return a message's field by its path, such as `pose.position`; without one, the message."""
     names = path.texts()
     return value_of(ctx, message, names[0]) if len(names) == 1 and names[0] else message
 

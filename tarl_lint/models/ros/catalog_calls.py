@@ -134,7 +134,7 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
 def _listed(
     ctx: Interpreter, it: Invocation, name: Value, default: Value, slot: Hashable = ()
 ) -> Value | None:
-    """Return the value of a parameter that is a list or mapping, from the launch file or its default; else None."""
+    """Return a list or mapping parameter's value, from the launch file or its default; else None."""
     names = name.texts()
     given = launched.value_of(ctx, names[0]) if len(names) == 1 else None
     if given is DEFAULT and default.pts and ctx.launched is not None:
@@ -145,7 +145,7 @@ def _listed(
 
 
 def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:
-    """Return the text that stands for a parameter in topic names; None if the call does not name one parameter."""
+    """Return the text for a parameter in topic names; None if the call does not name one."""
     names = it.argument(it.fact.topic).texts()
     return _value_of(ctx, names[0], default) if len(names) == 1 else None
 

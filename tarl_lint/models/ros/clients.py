@@ -91,7 +91,7 @@ def _used(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
 
 
 def _call_back(ctx: Interpreter, info: Publisher, it: Invocation, answer: Value) -> None:
-    """Run the callbacks of a goal: for the state and result, for the feedback, and for the start of the action."""
+    """Run a goal's callbacks: for the state and result, the feedback, and the action's start."""
     key = (*ctx.end_key(it.frame.program.path, it.call.pos, it.frame), info.api)
     for where, values in _CALLBACKS.get(it.name, {}).items():
         for target in it.argument(where).objects:

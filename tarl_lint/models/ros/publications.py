@@ -124,7 +124,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
 
 
 def _keys(ctx: Interpreter, it: Invocation, info: Publisher) -> tuple[Hashable, Hashable]:
-    """Return the keys of a publish call's record and node: a key for each publisher, at most MAX_APART for one call."""
+    """Return the keys of a publish call: one per publisher, at most MAX_APART for one call."""
     place, slot = (it.frame.program.path, it.call.pos), ("publish", it.call.slot)
     if ctx.launching:
         return ctx.end_key(*place, it.frame), slot

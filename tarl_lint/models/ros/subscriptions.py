@@ -107,7 +107,7 @@ def configured_source(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def feedback(ctx: Interpreter, it: Invocation) -> Value:
-    """Subscribe the callbacks of a marker or of a menu entry to the server's feedback topic, if the server is known."""
+    """Subscribe marker or menu callbacks to the server's feedback topic, if the server is known."""
     spaces = [heap.read_field(ctx, obj, NAMESPACE) for obj in it.base.objects if obj.kind == "lib"]
     topics = frozenset(f"{name}/feedback" for space in spaces for name in space.names())
     for given in (*it.arguments[0], *it.arguments[1].values()):
@@ -348,7 +348,7 @@ def _supplied(frame: Frame, callback: Value) -> bool:
 
 
 def _wrapped(target: Obj, frame: Frame) -> set[Obj]:
-    """Return the functions that are passed, directly or in nested calls, to a helper that wraps them in a callback."""
+    """Return the functions passed, perhaps in nested calls, to a helper that wraps them."""
     if target.kind == "partial" and isinstance(target.info, tuple):
         return {o for o in target.info[0].pts if o.kind in CALLABLE}
     maker = target.info[1] if target.kind == "closure" and isinstance(target.info, tuple) else None
