@@ -13,7 +13,7 @@ from tarl_lint.models.ros import publications
 
 
 def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delta] | None = None) -> None:
-    """Pass an exception to the handlers that may catch it, and to the caller unless one must.
+    """Pass an exception to the handlers that may catch it, and to the caller unless one certainly does.
 
     A `finally` on the way is executed first (`try_statements.py`). `states` holds the states that earlier exceptions
     passed on at the same point; exceptions share these states. Its keys are the numbers of layers below.

@@ -103,7 +103,7 @@ def _named(ctx: Interpreter, caller: Frame, call: ir.Call) -> Iterator[Origin]:
 
 
 def _origin(ctx: Interpreter, expr: ir.Expr, caller: Frame) -> tuple[Value, str | Value | None] | None:
-    """Return the objects with an argument as part, and its attribute or index; None if unknown."""
+    """Return an argument's containing objects, and its attribute or index; None if unknown."""
     if isinstance(expr, ir.Name):
         key = tags.key_of(expr, caller)
         taken = tags.taken_from(ctx, key, caller)

@@ -71,7 +71,7 @@ class Group(Generic[P]):
 
 @dataclass(frozen=True, slots=True)
 class Dependence(Generic[P]):
-    """`part` runs after some outcomes of `decider`; `outcomes` is None if any fork member decides."""
+    """`part` runs only after these `outcomes` of `decider`; None if any fork member may decide."""
 
     part: P
     decider: P

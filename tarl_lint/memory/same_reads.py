@@ -80,6 +80,6 @@ def _data(obj: Obj, store: Store) -> bool:
 
 
 def _held(obj: Obj, store: Store, beyond: int = 0) -> bool:
-    """Return whether a key holds an object pointer, beyond the first `beyond` keys that ever did."""
+    """Return whether a key points to `obj` now; skip the first `beyond` keys that ever did."""
     values = (store.peek(key) for key in islice(obj.holders, beyond, None))
     return any(value is not None and obj in value.pts for value in values)

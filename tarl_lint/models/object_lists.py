@@ -34,7 +34,7 @@ def is_object(element: Value) -> bool:
 
 
 def asked(ctx: Interpreter, elements: Sequence[Value]) -> bool:
-    """Return whether all loop elements are objects, integers, or tuples of objects and constants."""
+    """Return whether all loop elements are objects, integers, or tuples with objects."""
     for element in elements:
         parts = sizes.unpacked(ctx, element) or [element]
         known = all(is_object(part) or part.fixed() for part in parts)
