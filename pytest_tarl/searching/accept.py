@@ -101,7 +101,7 @@ def unforeseen(wanted: Sequence[object]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A program in a world. Call it with seeds to run it; `foresee` receives the seeds that the test will need next."""
+    """A program in a world, called with seeds to run; `foresee` receives the seeds needed next."""
 
     run: Callable[[int], Outcome]
     foresee: Callable[[Sequence[int]], None] = unforeseen
@@ -109,7 +109,7 @@ class World:
 
 @dataclass
 class Designed:
-    """The unrepaired program in the designed world. Each seed runs once, even if both tests of a candidate need it."""
+    """The unrepaired program in the designed world, which runs each seed once."""
 
     world: World
     known: dict[int, Outcome] = field(default_factory=dict)
@@ -216,7 +216,7 @@ class _World:
     bet: Bet | None = None
 
     def screened(self, seeds: Sequence[int]) -> Reason:
-        """Run the episodes before the test and choose the bet size. Return a reason to refuse the candidate, or ""."""
+        """Run the episodes before the test and choose the bet size; return a reason to refuse, or ""."""
         self.first = self._run(seeds)
         differences = self._differences(self.first, seeds)
         self.bet = bet(self.reference.margin, self.reference.least, differences)
@@ -237,7 +237,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Return whether the missions so far show that enough of them pass and that they lose at most the margin."""
+        """Return whether enough of the missions so far pass and they lose at most the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:

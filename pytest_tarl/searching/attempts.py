@@ -346,7 +346,7 @@ class Attempts:
         )
 
     def _alone(self, candidate: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """For a single change that was found as part of a combination, yield the changes that are preferred to it."""
+        """Yield the changes that are preferred to a single change from a combination."""
         self._tried.add(candidate)
         self._learn(unit, candidate, factor)
         yield from self.preferences.before(candidate, unit, factor, 0, True, True)

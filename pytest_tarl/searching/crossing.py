@@ -30,7 +30,7 @@ class Crossing:
             yield from tries.sweep(factor, guard, plateau.among(before, tries.units, gains, guard))
 
     def of_few(self, guard: Guard, few: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try the steps up to `plateau.FINE_UNTIL` on a few units, for at most half of the episodes that are left.
+        """Try steps up to `plateau.FINE_UNTIL` on a few units, with half of the episodes left.
 
         Stop when the gain of a unit is at least `CLEARLY`. Smaller gains do not count, because a wrong constant may
         gain a little on one seed.

@@ -68,7 +68,7 @@ class _Mission:
 
 
 def _directions(factor: float, tried: Collection[float]) -> list[bool]:
-    """Return whether to go upwards, for each direction, away from 1 first. Leave it out if its nearest factor is close.
+    """Return whether each direction is upwards, away from 1 first, without those too close.
 
     If no factor was tried in a direction, the nearest one is `OUTWARD` times larger or smaller.
     """

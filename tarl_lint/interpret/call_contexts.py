@@ -60,7 +60,7 @@ def invoke(
     call: ir.Call,
     owner: Obj | None = None,
 ) -> Value:
-    """Call a function. If the call passes no data and the module does not subscribe or publish, limit the budget."""
+    """Call a function; limit the budget if neither data nor the module's topics matter."""
     before, start = ctx.work.call_limit, ctx.work.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:

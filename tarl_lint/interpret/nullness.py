@@ -17,7 +17,7 @@ COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)
 
 
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
-    """Return the nodes that decide `x is None` if only this is tested, else None.
+    """Return the nodes that decide `x is None` if the test is only about that, else None.
 
     Whether a message has arrived does not count as data, but the conditions under which it was stored do.
     """

@@ -504,7 +504,7 @@ def new_queue(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def new_pipe(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the two ends of a pipe or channel. One object represents both ends: data that is sent comes out again."""
+    """Return both ends of a pipe or channel; one object represents them, so that sent data returns."""
     end = new_queue(ctx, it)
     obj = recency.allocate(ctx, "sequence", it.frame, ("ends", it.call.slot))
     for number in range(2):

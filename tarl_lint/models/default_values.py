@@ -17,7 +17,7 @@ CONTAINERS: Final = frozenset(["sequence", "mapping"])
 
 
 def replaceable(ctx: Interpreter, default: Value, frame: Frame, slot: Hashable) -> Value | None:
-    """Return a copy of a list or mapping with its texts as defaults, replaceable on the robot.
+    """Return a copy of a list or mapping whose texts are defaults; the actual texts are unknown.
 
     Numbers in the copy are unknown. Return None for other values, and for empty and large containers.
     """

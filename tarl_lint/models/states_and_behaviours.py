@@ -66,7 +66,7 @@ def connect(ctx: Interpreter) -> bool:
 
 
 def _represented(ctx: Interpreter) -> bool:
-    """Let objects whose method ran stand for the other objects of their class, if there are too many to run all."""
+    """Let objects whose method ran stand for the others of their class, if they are too many."""
     ran: dict[Obj, Part] = {}
     for part in ctx.parts.values():
         if part.answers and part.method is not None:

@@ -17,7 +17,7 @@ SIGNS: Final = ("~", "/")  # prefixes of topic names
 def note(
     ctx: Interpreter, qualified: str, made: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> None:
-    """Record an object made by a call whose first argument is a topic; its method `publish` publishes on this topic."""
+    """Record an object whose maker's first argument is a topic, on which its `publish` publishes."""
     names = sorted(t for t in arguments[0][0].texts() if t.startswith(SIGNS)) if arguments[0] else []
     if names:
         launched = ctx.config.launched
