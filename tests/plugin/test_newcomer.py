@@ -135,9 +135,10 @@ def test_interrupt_keeps_the_old_recording(
         tank,
         "keeper",
         "flow = GAIN * missing",
-        "flow = GAIN * missing\n            signal.raise_signal(signal.SIGINT)",
+        # another process sends the signal, as Ctrl-C does: a signal that a node sends to itself ends only the node
+        'flow = GAIN * missing\n            subprocess.run(["kill", "-INT", str(os.getpid())])',
     )
-    changed(tank, "keeper", "import rospy", "import signal\nimport rospy")
+    changed(tank, "keeper", "import rospy", "import os, subprocess\nimport rospy")
     ended = tank.runpytest_subprocess(*RECORD)  # in-process, the interrupt would end the outer pytest run
     assert ended.ret == pytest.ExitCode.INTERRUPTED
     ended.stdout.fnmatch_lines(["Interrupted in episode 1 of 16: .tarl/utility/*.npz is unchanged."])

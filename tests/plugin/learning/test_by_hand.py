@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.formulas.judging import Judged
-from pytest_tarl.learning import betting, footprint, parts
+from pytest_tarl.learning import betting, footprint, reward_parts
 from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.learning.binning import learned_edges, quantiles
 from pytest_tarl.learning.binomial import BinomialTail, log_choose, probabilities
@@ -412,7 +412,7 @@ def test_a_loss_is_named_only_below_the_level_and_if_it_is_material(monkeypatch:
     usual = replace(usual, chain=replace(usual.chain, parts=gains))
     moved = replace(moved, chain=replace(moved.chain, parts=np.zeros((4, 1))))
     p_values = np.array([0.05, 0.049, 0.01, 0.01])
-    monkeypatch.setattr(parts, "max_statistic", lambda *_, **__: p_values)
+    monkeypatch.setattr(reward_parts, "max_statistic", lambda *_, **__: p_values)
     assert lost(usual, moved, 0.05, np.random.default_rng(0)) == {"b": ((1,),)}
     p_values[0] = 0.04
     assert lost(usual, moved, 0.05, np.random.default_rng(0)) == {"b": ((0,), (1,))}

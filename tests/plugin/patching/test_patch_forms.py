@@ -13,8 +13,8 @@ import pytest
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.rewriting import rewrite
 from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odometry, subscribing, terrain
+from tests.plugin.patching.subscribed_nodes import NODES
 from tests.plugin.patching.test_patch import patched, repository, run, shell
-from tests.plugin.patching.test_subscriptions import NODES
 
 # statements that publish a value, with the results for an input of 1.0 as designed and in mud
 FORMS = {

@@ -14,16 +14,21 @@ from pytest_tarl.ros.interpreter_state import interpreter_kept
 from tests.plugin.ros.conftest import Start
 from tests.plugin.tank import changed
 
-USUAL = {one: signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)}
+HANDLED = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+
+
+def installed() -> list[Any]:
+    """Return the handlers, the functions and the limit of this process that no node may change."""
+    functions = os.kill, os.execv, signal.signal, signal.alarm
+    return [*map(signal.getsignal, HANDLED), *functions, sys.getrecursionlimit()]
 
 
 @pytest.fixture(autouse=True)
 def handlers_stay() -> Any:
     """No test of this file may change a handler, a timer or a function of pytest's process."""
-    before = os.kill, os.execv, signal.signal, signal.alarm, sys.getrecursionlimit()
+    before = installed()
     yield
-    assert {one: signal.getsignal(one) for one in USUAL} == USUAL
-    assert (os.kill, os.execv, signal.signal, signal.alarm, sys.getrecursionlimit()) == before
+    assert installed() == before
     assert signal.getitimer(signal.ITIMER_REAL)[1] == 0.0
 
 
