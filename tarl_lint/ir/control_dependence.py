@@ -201,7 +201,7 @@ def _iteration(loop: ir.Loop, raising: Raising, types: ExceptionTypes) -> Iterat
 
 def _control(graph: _Graph, entry: int, after: Mapping[int, Set[Branch]] = NOTHING) -> Control:
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
-    if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
+    if not after and not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
         nothing = dict.fromkeys(order, frozenset[Branch]())
         return Control(
             nothing, nothing, frozenset(), frozenset(order), graph.statements, graph.raising, graph.types

@@ -49,7 +49,8 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
 def _any_part(ctx: Interpreter, it: Invocation) -> Value:
     """Return an attribute of unknown name. A message also stands for its parts, so that stores into them are kept."""
     found = ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
-    whole = frozenset(o for o in it.arguments[0][0].pts if message_types.MESSAGE_MODULE in o.whole.name)
+    known = (o for value in it.arguments[0][:1] for o in value.pts)
+    whole = frozenset(o for o in known if message_types.MESSAGE_MODULE in o.whole.name)
     return Value(found.deps, found.pts | whole, found.consts) if whole else found
 
 
@@ -73,6 +74,8 @@ def _written(it: Invocation, name: str, number: int = 0) -> ir.Attribute:
 
 def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
     """Return the methods that `getattr(self, "do_" + verb)` may return; None if they are unknown."""
+    if len(it.arguments[0]) < 2:  # `getattr(*unknown(), *unknown())`
+        return None
     start, (holder, name, *rest) = _beginning(it.call.arguments[1]), it.arguments[0]
     found = BOTTOM
     for obj in holder.objects if len(start) > 1 else ():

@@ -65,3 +65,16 @@ def read():
 )
 def test_what_a_waiting_program_publishes(body: str, program: str) -> None:
     assert differing(NODE.format(body=body, program=program)) == {}
+
+
+def test_a_wait_in_a_loop_that_always_ends_decides_what_follows() -> None:
+    body = "def forward():\n    while True:\n        received.get()\n        break\n    out.publish(1.0)  # control"
+    text = NODE.format(body=body, program="forward()").replace(
+        '    received.put(("in", msg.data))', '    if heard > 3.0:\n        received.put("high")'
+    )
+    assert differing(text) == {}
+
+
+def test_getattr_of_unknown_arguments_is_not_an_error() -> None:
+    text = NODE.format(body="", program="out.publish(getattr(*unknown(), *unknown()))  # clean")
+    assert differing(text) == {}
