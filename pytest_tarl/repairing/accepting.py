@@ -311,7 +311,7 @@ class Examiner:
         goal, reference = self.order.goal, self.order.reference
         better = self.good_range.amid(candidate, trials, goal, reference)
         if better == candidate:
-            better = centred(candidate, trials, self.mutants.mutate, goal, reference)
+            better = centred(candidate, trials, self.mutants.mutate, goal, reference, self.ledger.knows)
         # if the centred value was examined before, examine the original value
         return candidate if self.ledger.alike(better) else better
 

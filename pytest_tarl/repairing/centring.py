@@ -8,7 +8,7 @@ value takes a few episodes on known seeds and can save a test of hundreds of epi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from statistics import fmean
 
@@ -27,12 +27,23 @@ MOVES = 3  # maximum number of moves in one direction with one ratio
 ASIDE = (1.25, 0.8, 1.12, 0.89)
 
 
+def none_examined(_: Candidate) -> bool:
+    """Return False: the default if no value was examined before."""
+    return False
+
+
 def centred(
-    candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, reference: Reference
+    candidate: Candidate,
+    trials: Trials,
+    mutate: Mutate,
+    goal: Goal,
+    reference: Reference,
+    examined: Callable[[Candidate], bool] = none_examined,
 ) -> Candidate:
     """Return the candidate with the best value found by hill climbing on known seeds.
 
-    A candidate that fails on these seeds, or that loses little, is returned unchanged. The loss is the difference from
+    The climb ends when it reaches a value that was `examined` before, because its further steps were taken then. A
+    candidate that fails on these seeds, or that loses little, is returned unchanged. The loss is the difference from
     the designed missions of these seeds: if the designed missions also earn less than the mean, a better value would
     only be fitted to a few starts. Raise BudgetSpentError.
     """
@@ -45,7 +56,8 @@ def centred(
                 candidate, trials, goal, [pair.seed for pair in pairs], enough, reference.margin
             ):
                 return candidate
-            return _climbed(candidate, trials, mutate, replace(goal, pairs=tuple(pairs)), enough)
+            among = replace(goal, pairs=tuple(pairs))
+            return _climbed(candidate, trials, mutate, among, enough, examined)
     except RepairError:
         return candidate
     return candidate
@@ -77,7 +89,14 @@ def in_place(candidate: Candidate) -> Candidate:
     return replace(candidate, mutations=candidate.changes)
 
 
-def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, enough: float) -> Candidate:
+def _climbed(
+    candidate: Candidate,
+    trials: Trials,
+    mutate: Mutate,
+    goal: Goal,
+    enough: float,
+    examined: Callable[[Candidate], bool],
+) -> Candidate:
     """Climb on the seeds of the goal's first pairs until no step in either direction is better."""
     best, totals = candidate, [trials(candidate, pair.seed).total for pair in goal.pairs[:SEEDS]]
     for step in STEPS:
@@ -88,6 +107,8 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
                 if other is None or earned is None or _at_the_edge(moved(other, ratio, mutate), trials, goal):
                     break
                 best, totals = other, earned
+                if examined(best):
+                    return best
         near = (moved(candidate, ratio, mutate) for ratio in (step, 1 / step))
         if all(one is not None and trials.same_as(one, candidate) for one in near):
             return candidate  # this step has no effect, so smaller steps have none either

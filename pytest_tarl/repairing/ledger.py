@@ -56,6 +56,10 @@ class Ledger:
         """Return the entry of an equal or nearly equal candidate, or None if there is none."""
         return next((one for one in self.tried if alike(one.candidate, candidate)), None)
 
+    def knows(self, candidate: Candidate) -> bool:
+        """Return whether an equal or nearly equal candidate was examined."""
+        return self.alike(candidate) is not None
+
     def examined(self, candidate: Candidate) -> bool:
         """Return whether a candidate's exact values were examined under its guard, at any place in the source."""
         return any(

@@ -140,6 +140,8 @@ class Others:
                 good.append(middle)
             between.told(STRONG[0] if enough else WEAK[0])
         if good and self.ledger.alike(good[len(good) // 2]) is None:
+            # known missions alone would lead it back towards the refused value, which earned more on them
+            self.chosen.add(good[len(good) // 2])
             yield good[len(good) // 2]
 
     def improved(self, refused: Candidate, trials: Trials) -> OtherValues:

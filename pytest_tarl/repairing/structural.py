@@ -15,6 +15,7 @@ from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import FIELD, OF_SENSORS, Template, templates
 from pytest_tarl.repairing.evident import STRONG, evident
+from pytest_tarl.repairing.ledger import operands
 from pytest_tarl.repairing.mission_pairs import NO_SIGNS, Signs
 from pytest_tarl.repairing.plainer_templates import factors
 from pytest_tarl.repairing.request import Order
@@ -177,10 +178,13 @@ class Structures:
             limit = whole if number == len(groups) - 1 else whole - int(KEPT * (left - share))
             self.trials.budget = self.trials.spent + share
             self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
+            yielded: set[frozenset[Operand]] = set()
             try:
                 for candidate in sweep.candidates():
-                    if self.trials.spent > limit:
-                        break
+                    changed = operands(candidate)
+                    if self.trials.spent > limit and changed in yielded:
+                        break  # only further values of the same expression would be refused again
+                    yielded.add(changed)
                     yield from self._beyond_its_share(candidate, whole)
             except BudgetSpentError:
                 if number == len(groups) - 1:

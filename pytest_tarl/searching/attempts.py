@@ -24,6 +24,7 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.lost_missions import MOVES, better_factor
 from pytest_tarl.searching.plainness import Oddness, writing
 from pytest_tarl.searching.polishing import ALMOST, EPISODES, FINE_STEPS, KNOWN
+from pytest_tarl.searching.preferred_first import then
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.refining import between_neighbours, bracket
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
@@ -190,13 +191,15 @@ class Attempts:
         self._learn(unit, candidate, factor)
         holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
         self._learn(unit, candidate, factor)
-        yield from self.preferences.before(candidate, unit, factor, pair, holds, near)
+        preferred = self.preferences.before(candidate, unit, factor, pair, holds, near)
         if holds:
             self.uses.learn(unit, guard, factor, pair)
-            yield candidate
+            yield from then(candidate, preferred)
             yield from self.preferences.after()
             yield from self._later(unit, guard, factor, pair)
-        elif near:
+        else:
+            yield from preferred
+        if near and not holds:
             yield from self._moved_on(unit, candidate, factor, pair)
             yield from self._nearly(unit, candidate, factor, pair)
             yield from self._following(unit, candidate, factor, pair)

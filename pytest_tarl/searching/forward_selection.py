@@ -15,6 +15,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.confirming import confirmed
 from pytest_tarl.searching.polishing import ALMOST, KNOWN, MUCH, SEEDS, SHARP_STEPS, Factors, polished
+from pytest_tarl.searching.preferred_first import then
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit
 
@@ -243,9 +244,8 @@ class ForwardSelection:
             if one != fewer and self.trials.same_as(one, fewer):
                 break  # the dropped parts have no effect, so the result would be the same
             if self.settled.holds(one, self.trials, self.goal, 0):
-                if one == fewer and len(least.parts) == 1:
-                    yield from self.preferred(one, *least.parts[0])
-                yield one
+                alone = one == fewer and len(least.parts) == 1
+                yield from then(one, self.preferred(one, *least.parts[0]) if alone else iter(()))
                 if self.trials.harms(one) or self.trials.gain(one, self.goal) > AMPLE * self.goal.wanted:
                     # the combination was refused although it earns enough, so refining it does not help
                     return

@@ -94,6 +94,24 @@ def test_value_does_not_move_to_one_that_loses_missions() -> None:
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found
 
 
+def test_climb_ends_at_a_value_that_was_examined() -> None:
+    def rising(candidate: Candidate, _: int) -> Outcome:
+        return Outcome(9.0 + 0.1 * (factor(candidate.mutations[0]) or 0.0), passed=True)
+
+    found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
+    free, stopped = Trials(rising, 100), Trials(rising, 100)
+    centred(found, free, mutations, GOAL, REFERENCE)
+    before: list[Candidate] = []
+
+    def examined(one: Candidate) -> bool:
+        before.append(one)
+        return len(before) == 2
+
+    best = centred(found, stopped, mutations, GOAL, REFERENCE, examined)
+    assert best == before[1] != found
+    assert stopped.spent < free.spent
+
+
 def test_candidate_that_fails_on_a_known_seed_stays() -> None:
     trials = world(4.0, 0.1)
     found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)

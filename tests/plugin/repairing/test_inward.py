@@ -42,7 +42,9 @@ def inward(low: float, high: float, lost: bool = True, known: float = 0.0) -> tu
     mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL))
     trials = Trials(run, 50)
     others = Others(mutants, ledger, missed)
-    proposed = [factor(one.mutations[0]) or 1.0 for one in others.inward(FOUND, trials)]
+    found = list(others.inward(FOUND, trials))
+    assert others.chosen == set(found)  # examined as it is: on known missions, the refused value earns more
+    proposed = [factor(one.mutations[0]) or 1.0 for one in found]
     assert list(others.inward(FOUND, trials)) == []  # the same operands are proposed only once
     return proposed, trials.spent
 

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.model import OperandEffect
+from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import Parameter, Template, templates
 from pytest_tarl.repairing import structural
@@ -210,6 +211,25 @@ def test_group_ends_when_its_share_is_used_up(tmp_path: Path, monkeypatch: pytes
     # 20, 35, 50 and 65 episodes were spent; the candidate at 65 is not examined any more
     assert told == [20, 35, 50, 66, 82]
     assert len(sweeps.given) == 3
+
+
+def test_confirmed_change_of_another_expression_is_never_dropped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of, three = made(tmp_path, 120)
+    first, second = (Candidate((Mutation(one, 3.0),), ALWAYS) for one in three[2].operands[:2])
+
+    def sweep(*_: Any, **__: Any) -> Any:
+        return SimpleNamespace(candidates=lambda: iter((first, second, first, second)), effects=dict)
+
+    monkeypatch.setattr(structural, "Sweep", sweep)
+    told: list[Candidate] = []
+    for candidate in of._searched(three[:2]):
+        told.append(candidate)
+        for _ in range(115 if len(told) == 1 else 0):  # far beyond the limit of the first group
+            of.trials.charge()
+    # the further values come too late in the first group, and in time in the last one
+    assert told == [first, second, *(first, second) * 2]
 
 
 def test_after_an_examination_the_share_grows_by_its_episodes(
