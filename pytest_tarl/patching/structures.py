@@ -277,8 +277,10 @@ def _target(statement: ast.stmt) -> ast.expr | None:
 
 
 def _short(statement: ast.stmt, node: ast.expr) -> str:
-    """Return a short name for a value, taken from its target or from the left side of a comparison."""
-    named = _target(statement) or (node.left if isinstance(node, ast.Compare) else node)
+    """Return a short name for a value: that of its target, of the name itself or of the left side of a comparison."""
+    named = node.left if isinstance(node, ast.Compare) else node
+    if getattr(statement, "value", None) is node or not isinstance(node, ast.Name | ast.Attribute):
+        named = _target(statement) or named
     text = ast.unparse(named).rpartition(".")[2]
     return text if text.isidentifier() else "value"
 

@@ -24,6 +24,7 @@ OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own t
 KINDS = (
     "value",
     "input",
+    "tracked",
     "number",
     "comparison",
     "pair",
@@ -34,6 +35,7 @@ KINDS = (
     "constant",
 )
 CONSTANT = "constant"  # a constant that follows a sensor or a variable
+TRACKED = "tracked"  # a side of a difference, such as the target in `target - position`
 PAIR = "pair"  # two expressions that differ only in their axis
 FIELD = "field"  # a field of a published message, if several statements build the field
 SENT_BY_SENSOR = "sent by sensor"  # a published value

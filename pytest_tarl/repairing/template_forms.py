@@ -10,7 +10,7 @@ from pytest_tarl.patching.clamps import CLAMPS, OPPOSITE
 from pytest_tarl.patching.document import Document, called, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
-from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, PAIR, Template
+from pytest_tarl.patching.templates import FIELD, FIXED, OF_SENSORS, PAIR, TRACKED, Template
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.steady_values import adds_to, has_effect
 from pytest_tarl.repairing.telling_sensors import continuous, usual
@@ -21,6 +21,7 @@ from tarl_lint.model import Operand
 MOST = {
     "value": 5,
     "input": 3,
+    "tracked": 4,
     "number": 5,
     "comparison": 5,
     "pair": 4,
@@ -66,7 +67,7 @@ def forms(
         if template.on not in OF_SENSORS:
             scales = {"typical": spot.typical, "larger": spot.larger}
             bare = Form(template, field=spot.field)
-            if twin is not None and template.on == "value":
+            if twin is not None and template.on in ("value", TRACKED):
                 bare = replace(bare, partner=twin.source.span(twin.node))
             yield list(_operands(template, spot, bare, scales))
             continue

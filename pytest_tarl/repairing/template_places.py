@@ -11,7 +11,7 @@ from itertools import combinations
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.built_fields import built_fields
 from pytest_tarl.patching.document import Document, called, document
-from pytest_tarl.patching.templates import FIELD
+from pytest_tarl.patching.templates import FIELD, TRACKED
 from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.steady_values import defined_once, is_constant
@@ -88,8 +88,10 @@ def spots(order: Order, responding: Sequence[str] = (), steady: Collection[str] 
                 )
             ),
             *_fields(source, step.span),
+            *((side, TRACKED, "") for side in _sides(source, step.span)),
         ):
-            key = (source.path, source.start(node), field)
+            # a difference and its first side start at the same place
+            key = (source.path, source.start(node), TRACKED if kind == TRACKED else field)
             if key not in seen and not is_member(source, node, order.analysis.sources.values()):
                 seen.add(key)
                 usual, larger = threshold(node), threshold(node)
@@ -180,6 +182,21 @@ def _fields(source: Document, span: Span) -> Iterator[tuple[ast.expr, str, str]]
     for node in ast.walk(source.tree):
         if isinstance(node, ast.Expr) and node.lineno == span.line:
             yield from ((message, FIELD, built.field) for message, built in built_fields(source, node))
+
+
+def _sides(source: Document, span: Span) -> Iterator[ast.expr]:
+    """Yield both sides of each difference of two values that vary, such as a target and a position."""
+    for statement in ast.walk(source.tree):
+        if (
+            not isinstance(statement, ast.Assign | ast.AnnAssign | ast.Return)
+            or statement.lineno != span.line
+        ):
+            continue
+        for node in ast.walk(statement.value) if statement.value is not None else ():
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub):
+                sides = (node.left, node.right)
+                if all(isinstance(side, ast.Name | ast.Attribute | ast.Subscript) for side in sides):
+                    yield from sides
 
 
 def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:

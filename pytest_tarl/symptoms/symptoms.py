@@ -37,6 +37,11 @@ ASIDE = 0.5  # an offset has strength 1 if the mean at the end grows by at least
 BESIDE = 0.25
 GROWTH = 0.2  # a runaway has strength 1 if (end - start) / (end + start) grows by at least this
 PAST = 0.1  # an overshoot has strength 1 if the share by which a value passes zero grows by at least this
+# a lag has a strength above 0 if the mean size at the end grows by more than the first factor, and its full strength
+# from the second factor on
+LAGS = (2.0, 6.0)
+# full strength of a lag: it comes after other symptoms, because most drifts make errors larger
+LAG = 0.9
 FEWEST = 6  # minimum number of values in a series
 
 
@@ -127,9 +132,23 @@ def overshoot(pairs: Sequence[Pair]) -> float:
     return float(np.clip(grown / PAST, 0.0, 1.0))
 
 
+def lag(pairs: Sequence[Pair]) -> float:
+    """Return how much larger the value's size is in the second half, if it changes slowly.
+
+    An error that grows while its target moves faster shows that the controller only follows.
+    """
+    least = STEADY * scale(pairs)
+    ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in pairs]
+    if not least or any(one.size < FEWEST or other.size < FEWEST for one, other in ends):
+        return 0.0
+    designed, drifted = (fmean(float(np.abs(each[at]).mean()) for each in ends) for at in (0, 1))
+    return LAG * _grown(designed + least, drifted, LAGS) * fmean(_slowness(other) for _, other in ends)
+
+
 SYMPTOMS: Mapping[str, Symptom] = {
     "chatter": chatter,
     "jumps": jumps,
+    "lag": lag,
     "noise": noise,
     "offset": offset,
     "overshoot": overshoot,
@@ -239,6 +258,12 @@ def _smoothness(values: Floats) -> float:
     if not spread or int((around[1:] * around[:-1] < 0.0).sum()) < CROSSINGS:
         return 0.0
     return max(float((around[1:] * around[:-1]).mean()) / spread, 0.0)
+
+
+def _slowness(values: Floats) -> float:
+    """Return the correlation of successive values, around zero: 1 for values that hardly change from call to call."""
+    size = float((values**2).mean())
+    return max(float((values[1:] * values[:-1]).mean()) / size, 0.0) if size else 0.0
 
 
 def _growth(values: Floats) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.patching.document import document
-from pytest_tarl.repairing.template_places import Spot, _away, _expressions, _fields, _steps, pairs
+from pytest_tarl.repairing.template_places import Spot, _away, _expressions, _fields, _sides, _steps, pairs
 from pytest_tarl.repairing.template_places import constants as constants_of
 from tarl_lint.model import SiteId, Span
 
@@ -70,6 +70,26 @@ def test_each_expression_of_a_statement_has_a_kind(
     text: str, numeric: bool, places: list[tuple[str, str]]
 ) -> None:
     assert found(text, numeric=numeric) == places
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("x = a - b", ["a", "b"]),
+        ("x: float = goal.x - self.at['x']", ["goal.x", "self.at['x']"]),
+        ("x = k * (a.target - b) + c", ["a.target", "b"]),
+        ("x = math.atan2(a.y - b.y, a.x - b.x)", ["a.y", "b.y", "a.x", "b.x"]),
+        ("x = a - 1.0", []),
+        ("x = a + b", []),
+        ("x = a * 2 - b", []),
+        ("out.publish(a - b)", []),
+        ("x: float", []),
+    ],
+)
+def test_sides_of_a_difference_can_be_tracked(text: str, sides: list[str]) -> None:
+    source = document("a.py", text + "\n")
+    span = source.span(source.tree.body[0])  # type: ignore[arg-type]
+    assert [source.source(side) for side in _sides(source, span)] == sides
 
 
 def test_calls_of_functions_that_returned_numbers_count_as_arguments() -> None:

@@ -68,6 +68,7 @@ BODIES = {  # other ways to compute the same value
 }
 SCALED = "value = 2.0 * msg.data\n        self.out.publish(value)"
 INPUT = "value = msg.data\n        self.out.publish(value)"
+DIFFERENCE = "value = msg.data - self.slope\n        self.out.publish(value)"
 COMPARED = (
     "value = msg.data\n        if value < self.bound:\n            self.out.publish(value)\n"
     "        else:\n            self.out.publish(-value)"
@@ -96,6 +97,17 @@ def delayed_by_travel() -> Command:
         values.append(((values[-1][0] if values else 0.0) + speed, value))
         due = [told for at, told in values if at <= values[-1][0] - 6.0]
         return due[-1] if due else values[0][1]
+
+    return command
+
+
+def fed_forward() -> Command:
+    """Return a command that adds seven times the change of the value."""
+    before: list[float] = []
+
+    def command(value: float, slope: float) -> float:
+        before.append(value)
+        return value + 7.0 * (value - before[max(len(before) - 2, 0)]) - slope
 
     return command
 
@@ -169,6 +181,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "delay": (INPUT, delayed),
     "delay_by_travel": (INPUT, delayed_by_travel),
     "derivative": (VALUE, lambda: kept(derivative)),
+    "feed_forward": (DIFFERENCE, fed_forward),
     "field_gain": (BUILT, lambda: lambda value, _: 3.4 * value),
     "gain": (INPUT, lambda: lambda value, _: 3.1 * value),
     "hysteresis": (COMPARED, lambda: kept(hysteresis)),

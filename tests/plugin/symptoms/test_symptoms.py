@@ -50,6 +50,7 @@ CASES: dict[str, tuple[Floats, Floats]] = {
     "offset": (NEARING, NEARING + 1.5),
     "swing": (NEARING, NEARING + 0.8 * np.sin(TIME * 3.0)),
     "runaway": (NEARING, 3.0 * np.exp(TIME / 12.0)),
+    "lag": (0.1 * relay(30) - 0.05, 0.8 * relay(30) - 0.4),
 }
 
 
@@ -79,6 +80,9 @@ OTHERS = [
     ("swing", "noise"),
     ("runaway", "swing"),
     ("runaway", "spikes"),
+    ("lag", "noise"),
+    ("lag", "spikes"),
+    ("lag", "chatter"),
 ]
 
 
