@@ -40,6 +40,7 @@ JUDGING = (
     "drift_judging_23",
     "drift_judging_24",
     "drift_judging_25",
+    "drift_judging_26",
     "drift_structure",
 )
 TASKS = sorted(
@@ -422,6 +423,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_23",
         "drift_judging_24",
         "drift_judging_25",
+        "drift_judging_26",
     ],
 )
 def test_hand_repairs_restore_the_reward(folder: str) -> None:
