@@ -13,7 +13,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.1
 OFFICE = {"frames": 0.0}
-HOSPITAL = {"frames": 0.024}  # share of those who walk with a frame
+HOSPITAL = {"frames": 0.032}  # share of those who walk with a frame
 
 
 class Floor:

@@ -1,4 +1,4 @@
-"""An oven bakes bread. Rye holds more water than wheat, and is still gummy at the core temperature at which wheat is done.
+"""An oven bakes bread. Rye holds more water than wheat and is still gummy when wheat is done.
 
 Nothing earns until the loaf is cut: then a set crumb and a moist loaf do, and a gummy or dry one is a loss.
 """
