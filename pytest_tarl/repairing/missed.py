@@ -52,7 +52,9 @@ class Missed:
         slack, lost = reference.mean - goal.near, []
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=False):
             near = min(designed, reference.mean) - slack
-            if outcome.total < near or goal.lost(outcome):
+            # where the designed mission fails, too, no change can do better
+            hopeless = goal.passing and designed < goal.near
+            if not hopeless and (outcome.total < near or goal.lost(outcome)):
                 lost.append((seed, near))
         self.seeds += lost
         if 0 < len(lost) <= FEW * len(found.drifted):

@@ -286,6 +286,17 @@ def test_mission_is_lost_if_its_loss_exceeds_the_slack() -> None:
     assert few.poor == set()  # here, missions need not succeed
 
 
+def test_mission_that_also_fails_as_designed_is_not_lost() -> None:
+    found = replace(
+        acceptance({1: 0.0, 2: 0.0, 3: 0.0}, failed=[1, 2]),
+        designed=(10.0, -3.0, 10.0),
+        drifted=(Outcome(1.0, False), Outcome(-7.0, False), Outcome(10.0, True)),
+    )
+    missed = Missed()
+    missed.learn(scaled(2.0), found, replace(GOAL, passing=True), MARGIN)
+    assert missed.seeds == [(1, 8.0)]
+
+
 @pytest.mark.parametrize(
     ("lost", "expected", "runs"), [((0, 1), True, 2), ((0, 2), True, 3), ((0,), False, 3), ((3,), False, 3)]
 )
