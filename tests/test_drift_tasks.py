@@ -360,6 +360,20 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_26": [
+        "helper",
+        "narrow window",
+        "one constant",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "structure",
+        "structure",
+        "structure",
+        "two constants",
+    ],
 }
 
 
