@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
 
 from pytest_tarl.ros.scheduler import running_task
 
@@ -17,9 +20,38 @@ def _for_others(close: Callable[[], None]) -> Callable[[], None]:
     return choose
 
 
+def _noted(change: Callable[..., None], before: list[Path]) -> Callable[..., None]:
+    def choose(*args: Any, **named: Any) -> None:
+        if running_task() is not None and not before:
+            before.append(Path.cwd())
+        change(*args, **named)
+
+    return choose
+
+
+@contextmanager
+def _working_directory_kept() -> Iterator[None]:
+    """Return to the working directory from which a node moved, so that the next episode starts there, too."""
+    before: list[Path] = []
+    real = {name: getattr(os, name) for name in ("chdir", "fchdir") if hasattr(os, name)}
+    for name, change in real.items():
+        setattr(os, name, _noted(change, before))
+    try:
+        yield
+    finally:
+        for name, change in real.items():
+            setattr(os, name, change)
+        if before:
+            with suppress(OSError):  # the directory was removed
+                os.chdir(before[0])
+
+
 @contextmanager
 def interpreter_kept() -> Iterator[None]:
-    """Let a node's `close()` of a standard stream do nothing; restore the recursion limit and removed import paths."""
+    """Let a node's `close()` of a standard stream do nothing; restore what else a node changes in the interpreter.
+
+    That is the recursion limit, removed import paths and finders, and the working directory.
+    """
     limit, paths, finders = sys.getrecursionlimit(), [*sys.path], [*sys.meta_path]
     kept = []
     for stream in (sys.stdout, sys.stderr):
@@ -27,7 +59,8 @@ def interpreter_kept() -> Iterator[None]:
             stream.close = _for_others(stream.close)  # type: ignore[method-assign]
             kept.append(stream)
     try:
-        yield
+        with _working_directory_kept():
+            yield
     finally:
         sys.setrecursionlimit(limit)
         sys.path.extend(one for one in paths if one not in sys.path)

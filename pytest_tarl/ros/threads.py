@@ -82,9 +82,11 @@ class Lock:
                     "continue: call tarl.step first."
                 )
             self._waiting.append(task)
-            clock.wait(until)
-            if task in self._waiting:
-                self._waiting.remove(task)
+            try:
+                clock.wait(until)
+            finally:  # after a timeout or an exception; `release` would wake this task instead of one that waits
+                if task in self._waiting:
+                    self._waiting.remove(task)
         self._held = True
         return True
 

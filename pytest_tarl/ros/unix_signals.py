@@ -6,6 +6,7 @@ and a real signal to the own process or an alarm would end pytest.
 
 from __future__ import annotations
 
+import _thread
 import os
 import signal
 import sys
@@ -55,17 +56,33 @@ class _Signals:
         SIGINT and SIGTERM shut the node down, because rospy and rclpy handle them in this way.
         """
         handler = self.handler(number)
-        for task in self.paused:
-            self.process.scheduler.wake(task)
-        self.paused.clear()
         if callable(handler) and handler is not signal.default_int_handler:
-            handler(number, sys._getframe(1))
+            self._call(handler, number)
         elif handler == signal.SIG_IGN or number in _HARMLESS:
             return
         elif number in (signal.SIGINT, signal.SIGTERM):
             self.process.scheduler.later(self.process.end)
         else:
             raise ProcessExit(_BY_A_SIGNAL + number)
+
+    def _call(self, handler: Callable[[int, Any], Any], number: int) -> None:
+        """Call a handler, then wake the tasks in `pause`.
+
+        As in Python, the main program gets the exception of a handler. From other tasks, it is raised where the main
+        program waits.
+        """
+        process = self.process
+        try:
+            handler(number, sys._getframe(2))
+        except (GreenletExit, ProcessExit):
+            raise
+        except BaseException as error:
+            if process.main in (None, running_task()):
+                raise
+            process.scheduler.later(partial(process.scheduler.interrupt, process.main, error))
+            return
+        for task in self.paused:
+            process.scheduler.wake(task)
 
     def set_alarm(self, delay: int, interval: int = 0) -> tuple[int, int]:
         """Set the alarm, or remove it if `delay` is 0; return what was left of the previous one, and its interval."""
@@ -81,18 +98,7 @@ class _Signals:
         if which != self._set or self.process.ending:
             return
         self.set_alarm(self.interval, self.interval)
-        self.process.scheduler.spawn(self.process, self._delivered)
-
-    def _delivered(self) -> None:
-        """Handle the alarm; an exception of the handler is raised where the main program waits."""
-        try:
-            self.receive(signal.SIGALRM)
-        except (GreenletExit, ProcessExit):
-            raise
-        except BaseException as error:
-            if self.process.main is None:
-                raise
-            self.process.scheduler.later(partial(self.process.scheduler.interrupt, self.process.main, error))
+        self.process.scheduler.spawn(self.process, self.receive, signal.SIGALRM)
 
 
 @contextmanager
@@ -126,6 +132,11 @@ def signals_of_nodes() -> Iterator[None]:
         replace(signal, "getitimer", _getitimer)
         replace(signal, "pause", _pause)
         replace(signal, "raise_signal", lambda signals, number: signals.receive(number))
+        # all threads of a node are tasks in the thread of pytest, so every thread is the node
+        replace(
+            signal, "pthread_kill", lambda signals, _, number: signals.receive(number) if number else None
+        )
+        replace(_thread, "interrupt_main", _interrupt_main)
         replace(os, "kill", partial(_kill, os.kill))
         replace(os, "killpg", partial(_killpg, os.killpg))
         replace(os, "abort", _abort)
@@ -172,7 +183,15 @@ def _pause(signals: _Signals) -> None:
     task = running_task()
     if task is not None:
         signals.paused.append(task)
-        signals.process.scheduler.wait()
+        try:
+            signals.process.scheduler.wait()
+        finally:
+            signals.paused.remove(task)
+
+
+def _interrupt_main(signals: _Signals, number: int = signal.SIGINT) -> None:
+    if signals.handler(number) not in (signal.SIG_IGN, signal.SIG_DFL):
+        signals.receive(number)
 
 
 def _kill(real: Callable[..., Any], signals: _Signals, pid: int, number: int) -> None:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import _thread
 import os
 import signal
 import sys
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pytest_tarl.errors import NodeError, UnsupportedApiError
+from pytest_tarl.ros import Ros
 from pytest_tarl.ros.interpreter_state import interpreter_kept
 from tests.plugin.ros.conftest import Start
 from tests.plugin.tank import changed
@@ -19,7 +23,7 @@ HANDLED = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 
 def installed() -> list[Any]:
     """Return the handlers, the functions and the limit of this process that no node may change."""
-    functions = os.kill, os.execv, signal.signal, signal.alarm
+    functions = os.kill, os.execv, signal.signal, signal.alarm, signal.pthread_kill, _thread.interrupt_main
     return [*map(signal.getsignal, HANDLED), *functions, sys.getrecursionlimit()]
 
 
@@ -119,6 +123,108 @@ def test_an_alarm_rings_in_virtual_time_where_the_main_program_waits(start: Star
     ros.step(20.0)
 
 
+def test_an_alarm_that_raises_ends_a_pause_with_its_exception(start: Start) -> None:
+    ros = start("""
+        import signal, time
+        def late(number, frame):
+            raise TimeoutError(number)
+        signal.signal(signal.SIGALRM, late)
+        signal.alarm(1)
+        caught = False
+        try:
+            signal.pause()
+        except TimeoutError:
+            caught = True
+        time.sleep(20.0)
+    """)
+    ros.step(5.0)
+    assert ros.namespace["caught"] is True
+
+
+@pytest.mark.parametrize(
+    ("made", "wait", "notify"),
+    [("Lock", "acquire", "release"), ("Condition", "wait", "notify")],
+)
+def test_an_interrupted_wait_for_a_lock_does_not_take_the_turn_of_another(
+    start: Start, made: str, wait: str, notify: str
+) -> None:
+    ros = start(f"""
+        import signal, time, threading
+        shared, got = threading.{made}(), []
+        shared.acquire()
+        def late(number, frame):
+            raise TimeoutError(number)
+        def other():
+            time.sleep(0.5)
+            if "{wait}" == "wait":
+                shared.acquire()
+            shared.{wait}()
+            got.append("other")
+        signal.signal(signal.SIGALRM, late)
+        signal.alarm(1)
+        threading.Thread(target=other).start()
+        try:
+            shared.{wait}()
+        except TimeoutError:
+            got.append("late")
+        time.sleep(1.0)
+        shared.{notify}()
+        if "{notify}" == "notify":
+            shared.release()
+        time.sleep(20.0)
+    """)
+    ros.step(5.0)
+    assert ros.namespace["got"] == ["late", "other"]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "os.kill(os.getpid(), signal.SIGINT)",
+        "signal.raise_signal(signal.SIGINT)",
+        "signal.pthread_kill(threading.get_ident(), signal.SIGINT)",
+        "_thread.interrupt_main()",
+    ],
+)
+def test_the_main_program_gets_the_exception_of_a_handler_that_another_thread_calls(
+    start: Start, call: str
+) -> None:
+    ros = start(f"""
+        import _thread, os, signal, sys, threading, time
+        got = []
+        def stop(number, frame):
+            got.append(number)
+            sys.exit(0)
+        def quits():
+            time.sleep(0.5)
+            {call}
+            got.append("goes on")
+        signal.signal(signal.SIGINT, stop)
+        threading.Thread(target=quits).start()
+        try:
+            while True:
+                time.sleep(0.2)
+        finally:
+            got.append("ended")
+    """)
+    ros.step(5.0)
+    assert ros.namespace["got"] == [signal.SIGINT, "goes on", "ended"]
+
+
+def test_an_interrupt_of_the_main_program_without_a_handler_shuts_the_node_down(start: Start) -> None:
+    ros = start("""
+        import _thread, signal, rospy
+        rospy.init_node("n")
+        _thread.interrupt_main(signal.SIGTERM)  # without a Python handler: no effect
+        went_on = not rospy.is_shutdown()
+        _thread.interrupt_main()
+        rospy.spin()
+        ended = True
+    """)
+    ros.step(1.0)
+    assert (ros.namespace["went_on"], ros.namespace["ended"]) == (True, True)
+
+
 def test_a_timer_rings_again_until_it_is_removed(start: Start) -> None:
     ros = start("""
         import signal, time
@@ -181,6 +287,26 @@ def test_streams_stay_open_and_the_recursion_limit_is_restored(start: Start) -> 
     assert not sys.stdout.closed
     assert not sys.stderr.closed
     ros.close()
+
+
+@pytest.mark.parametrize("change", ["os.chdir('/')", "os.fchdir(os.open('/', os.O_RDONLY))"])
+def test_the_working_directory_that_a_node_left_is_restored(change: str) -> None:
+    before, functions = Path.cwd(), (os.chdir, os.fchdir)
+    ros = Ros()
+    with ros.installed():
+        for _ in range(2):
+            ros.start(partial(exec, f"import os\n{change}"), name="node.py")
+            assert Path.cwd() == Path("/")
+        ros.close()
+    assert (Path.cwd(), os.chdir, os.fchdir) == (before, *functions)
+
+
+def test_a_test_that_leaves_the_working_directory_is_not_moved_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with interpreter_kept():
+        monkeypatch.chdir(tmp_path)
+    assert Path.cwd() == tmp_path
 
 
 def test_import_paths_and_finders_that_a_node_removed_come_back(monkeypatch: pytest.MonkeyPatch) -> None:
