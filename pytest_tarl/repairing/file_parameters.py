@@ -46,17 +46,14 @@ def file_parameters(order: Order, operands: Sequence[Operand]) -> list[Parameter
     """Return the parameters that no operand stands for by itself. Those that a data flow names come first."""
     analysis = order.analysis
     calls = {key: one for one in operands if (key := _key_of_call(analysis, one))}
-    known = {
-        (key, one.value is not None)
-        for one in operands
-        if one not in calls.values()
-        for key in _keys(analysis, one)
-    }
-    # a factor on a use changes neither a zero nor a boolean: an operand of unknown value does not stand for these
+    known: dict[str, list[Operand]] = {}
+    for one in operands:
+        for key in () if one in calls.values() else _keys(analysis, one):
+            known.setdefault(key, []).append(one)
     values = [
-        one
-        for one in _values(order, operands)
-        if (one[0], True) not in known and ((one[0], False) not in known or not _scales(one[1].value))
+        (key, place, size)
+        for key, place, size in _values(order, operands)
+        if not any(_changes(one, place.value) for one in known.get(key, ()))
     ]
     if not values or order.options.edit == USE:
         return []
@@ -70,9 +67,9 @@ def file_parameters(order: Order, operands: Sequence[Operand]) -> list[Parameter
     return found
 
 
-def _scales(value: Number) -> bool:
-    """Return whether a factor changes a number as intended."""
-    return bool(value) and not isinstance(value, bool)
+def _changes(use: Operand, value: Number | None) -> bool:
+    """Return whether a changed use of a parameter changes its value; a factor on a use changes no zero or boolean."""
+    return use.value is not None or (bool(value) and not isinstance(value, bool))
 
 
 def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Place, float]]:
@@ -147,8 +144,9 @@ def _rank(place: Place, keys: Sequence[str] | None) -> int:
 def uses_of(
     analysis: Analysis, parameter: ParameterInFile, operands: Sequence[Operand]
 ) -> tuple[Operand, ...]:
-    """Return the operands that stand for a parameter in a file by themselves."""
-    return tuple(one for one in operands if parameter.setting in _keys(analysis, one))
+    """Return the operands that stand for a parameter in a file by themselves, if one can change its value."""
+    uses = tuple(one for one in operands if parameter.setting in _keys(analysis, one))
+    return uses if any(_changes(one, parameter.value) for one in uses) else ()
 
 
 def is_table(order: Order, operand: Operand) -> bool:

@@ -360,3 +360,24 @@ def test_a_parameter_that_is_published_unchanged_is_changed_where_it_is_used(
     guard = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1.0, 1.0),))
     (text,) = rewrite(order.analysis, [mutation], guard, {"/wet": "std_msgs/msg/Bool"}).values()
     assert "        if self.wet:\n            command.x = clamp(2.5 * self.pressure, 1.5, 10.0)\n" in text
+
+
+@pytest.mark.parametrize(("written", "value"), [("0.0", 0.0), ("0", 0), ("true", True), ("false", False)])
+def test_a_zero_or_boolean_is_changed_in_its_file_although_a_statement_uses_it(
+    written: str, value: float, tmp_path: Path
+) -> None:
+    order = order_of(tmp_path, FORMS["loop"], {**READ, "/keeper/offset_left": value})
+    (tmp_path / "config/params.yaml").write_text(YAML.replace("offset_left: 0.0", f"offset_left: {written}"))
+    (tmp_path / "keeper.py").write_text(BESIDE.replace("{read}", 'rospy.get_param("~offset_left")'))
+    order.analysis = analyse([Path("keeper.py")], root=tmp_path)
+    found = in_files(order)["offset_left"]
+    assert (found.value, found.place and found.place.path) == (value, "config/params.yaml")
+    assert all(each.code != "self.pressure" for each in operands(order))
+
+
+def test_a_use_with_a_known_zero_takes_the_place_of_the_parameter(tmp_path: Path) -> None:
+    order = order_of(tmp_path, FORMS["loop"])
+    (tmp_path / "keeper.py").write_text(BESIDE.replace("{read}", 'rospy.get_param("~offset_left", 0.0)'))
+    order.analysis = analyse([Path("keeper.py")], root=tmp_path)
+    assert "offset_left" not in in_files(order)
+    assert [each.value for each in operands(order) if each.code == "self.pressure"] == [0.0]
