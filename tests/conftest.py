@@ -10,26 +10,40 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.slow import SLOW
+from tests.slow import SEED, SLOW
 from website.other_plugins import BLOCKED
 
 pytest_plugins = ["pytester"]
 
-# Hypothesis runs the same examples every time and has no deadline, since a loaded machine is not a defect.
-settings.register_profile(
-    "tarl",
-    max_examples=100 if SLOW else 40,
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow],
-)
-settings.load_profile("tarl")
 
+@pytest.hookimpl(tryfirst=True)  # before Hypothesis reads its options
+def pytest_configure(config: pytest.Config) -> None:
+    """Load the profile of Hypothesis; handle Ctrl-C even if a script started pytest in the background.
 
-def pytest_configure() -> None:
-    """Handle Ctrl-C, also in the programs under test, even if a script started pytest in the background."""
+    Hypothesis runs the same examples every time, unless a run has a seed. It has no deadline, since a loaded machine is
+    not a defect, and keeps no examples, so that a seed always draws the same ones.
+    """
+    given = getattr(config.option, "hypothesis_seed", None)  # the plugin of Hypothesis may be blocked
+    if SEED and given is None:
+        config.option.hypothesis_seed = str(SEED)
+    settings.register_profile(
+        "tarl",
+        max_examples=100 if SLOW else 40,
+        deadline=None,
+        derandomize=not SEED and given is None,
+        database=None,
+        suppress_health_check=[HealthCheck.too_slow],
+    )
+    settings.load_profile("tarl")
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Print the seed, also with `-q`."""
+    terminal = session.config.pluginmanager.get_plugin("terminalreporter")
+    if SEED and terminal is not None and not hasattr(session.config, "workerinput"):
+        terminal.write_line(f"random cases: repeat them with TARL_SEED={SEED}")
 
 
 @pytest.fixture(scope="session", autouse=True)

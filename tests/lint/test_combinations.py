@@ -1,6 +1,5 @@
 """Combinations of kinds of state, callbacks, messages, publishers and main programs."""
 
-import random
 from collections.abc import Iterator
 
 import pytest
@@ -9,17 +8,18 @@ from tarl_lint import engine
 from tarl_lint.read.source import Module, parse
 from tarl_lint.settings.config import Config
 from tests.lint.combining import AXES, node
+from tests.slow import chance
 
 Parts = tuple[str, ...]
 USUAL = ("attribute", "method", "scalar", "attribute", "timer")
-MIXED = 60  # random combinations, the same ones in every run
+MIXED = 60  # number of random combinations
 
 
 def chosen() -> Iterator[Parts]:
     for place, axis in enumerate(AXES):
         for part in axis:
             yield (*USUAL[:place], part, *USUAL[place + 1 :])
-    draw = random.Random(7)
+    draw = chance(7)
     for _ in range(MIXED):
         yield tuple(draw.choice(sorted(axis)) for axis in AXES)
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ast
-import os
-import random
 from pathlib import Path
 
 import pytest
@@ -23,6 +21,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.run.deep_stack import with_deep_stack
 from tarl_lint.settings.config import Config
 from tests.lint.combining import AXES, node
+from tests.slow import SLOW, chance
 
 CASES = Path(__file__).parents[1] / "cases"
 DATA = frozenset([1])
@@ -198,7 +197,7 @@ def test_a_replay_that_differs_is_reported(monkeypatch):
 def units() -> list[Path]:
     """Return a sample of the marked cases, all of them in slow runs."""
     every = sorted(p for p in CASES.rglob("*.py") if p.name != "__init__.py")
-    return every if os.environ.get("TARL_SLOW") else random.Random(12).sample(every, 12)
+    return every if SLOW else chance(12).sample(every, 12)
 
 
 @pytest.mark.parametrize("path", units(), ids=lambda p: str(p.relative_to(CASES)))
@@ -207,8 +206,8 @@ def test_replays_of_the_test_cases_equal_executions(path):
 
 
 def test_replays_of_randomly_generated_nodes_equal_executions():
-    draw = random.Random(3)
-    for _ in range(60 if os.environ.get("TARL_SLOW") else 6):
+    draw = chance(3)
+    for _ in range(60 if SLOW else 6):
         linked(node(*(draw.choice(sorted(axis)) for axis in AXES)), checking=True)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import sysconfig
 from collections.abc import Callable
 from pathlib import Path
@@ -17,8 +16,8 @@ from tarl_lint.read.source import LARGEST, Script, read
 from tarl_lint.run.groups import Task, perform
 from tarl_lint.run.runner import Result, run
 from tarl_lint.settings.config import Config, Options, resolve
+from tests.slow import SLOW, chance
 
-SLOW = os.environ.get("TARL_SLOW") == "1"
 NODE = """\
 import rospy
 from std_msgs.msg import Float64
@@ -231,7 +230,7 @@ def test_random_bytes_are_read_or_refused(data):
 @pytest.mark.parametrize("seed", range(3))
 def test_damaged_programs_are_read_or_refused(seed):
     """A real node with bytes changed, removed and doubled."""
-    chosen = random.Random(seed)
+    chosen = chance(seed)
     for _ in range(200 if SLOW else 20):
         data = bytearray(PLAIN.encode())
         for _ in range(chosen.randint(1, 4)):
@@ -261,7 +260,7 @@ def test_generated_programs_are_analysed():
 def standard_library() -> list[Path]:
     home = Path(sysconfig.get_path("stdlib"))
     every = sorted(p for p in home.rglob("*.py") if "site-packages" not in p.parts)
-    return every if SLOW else random.Random(1).sample(every, 12)
+    return every if SLOW else chance(1).sample(every, 12)
 
 
 def test_the_standard_library_is_analysed():

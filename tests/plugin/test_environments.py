@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -12,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.plugin.tank import RECORD, fixture_file
-from tests.slow import SLOW
+from tests.slow import SLOW, chance
 
 TIMES = 40 if SLOW else 2
 PYTESTS_OWN = "assertions not in test modules:pytest.PytestConfigWarning"  # with -O, pytest warns about this
@@ -41,7 +40,7 @@ VARIABLES: Mapping[str, tuple[str | None, ...]] = {
 
 def drawn(seed: int) -> tuple[list[str], list[str], dict[str, str], int]:
     """Return the flags of Python, options of pytest, variables and umask of a run."""
-    draw = random.Random(seed)
+    draw = chance(seed)
     chosen = {name: draw.choice(values) for name, values in VARIABLES.items()}
     kept = {name: value for name, value in os.environ.items() if name not in chosen}
     variables = kept | {name: value for name, value in chosen.items() if value is not None}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import subprocess
 import sys
 import time
@@ -11,7 +10,7 @@ import pytest
 
 from pytest_tarl.learning.fixture import load
 from tests.plugin.tank import RECORD, fixture_file
-from tests.slow import SLOW
+from tests.slow import SLOW, chance
 
 TIMES = 20 if SLOW else 3
 
@@ -25,7 +24,7 @@ def test_killing_a_recording_leaves_a_valid_file(tank: pytest.Pytester) -> None:
     before = time.perf_counter()
     assert recording(tank, 0).wait() == 0
     lasts = time.perf_counter() - before
-    moments = random.Random(5)
+    moments = chance(5)
     for seed in range(1, TIMES + 1):
         run = recording(tank, seed)
         time.sleep(moments.uniform(0.3, 1.0) * lasts)

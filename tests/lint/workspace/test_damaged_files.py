@@ -21,7 +21,7 @@ from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.message_files import fields
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.read import read
-from tests.slow import SLOW
+from tests.slow import SLOW, chance
 
 DESCRIPTION = """
 from launch import LaunchDescription
@@ -145,23 +145,23 @@ def is_valid(name: str, data: bytes) -> bool:
     return True
 
 
-def _truncated(data: bytes, chance: random.Random) -> bytes:
-    return data[: chance.randrange(len(data))]
+def _truncated(data: bytes, draw: random.Random) -> bytes:
+    return data[: draw.randrange(len(data))]
 
 
-def _overwritten(data: bytes, chance: random.Random) -> bytes:
-    start = chance.randrange(len(data))
-    noise = chance.randbytes(chance.randint(1, 8))
+def _overwritten(data: bytes, draw: random.Random) -> bytes:
+    start = draw.randrange(len(data))
+    noise = draw.randbytes(draw.randint(1, 8))
     return data[:start] + noise + data[start + len(noise) :]
 
 
-def _badly_encoded(data: bytes, chance: random.Random) -> bytes:
-    start = chance.randrange(len(data) + 1)
+def _badly_encoded(data: bytes, draw: random.Random) -> bytes:
+    start = draw.randrange(len(data) + 1)
     return data[:start] + "ä".encode("latin-1") + data[start:]
 
 
-def _noise(data: bytes, chance: random.Random) -> bytes:
-    return chance.randbytes(len(data))
+def _noise(data: bytes, draw: random.Random) -> bytes:
+    return draw.randbytes(len(data))
 
 
 DAMAGES: tuple[Callable[[bytes, random.Random], bytes], ...] = (
@@ -181,12 +181,12 @@ def test_the_undamaged_files_are_read_without_a_problem(workspace: Path) -> None
 @pytest.mark.parametrize("name", KINDS)
 def test_a_damaged_file_is_named_or_has_no_effect(name: str, workspace: Path) -> None:
     before, _ = seen(workspace)
-    path, chance = workspace / name, random.Random(name)
+    path, draw = workspace / name, chance(name)
     data = path.read_bytes()
     invalid = 0
     try:
         for number in range(RUNS):
-            damaged = DAMAGES[number % len(DAMAGES)](data, chance)
+            damaged = DAMAGES[number % len(DAMAGES)](data, draw)
             path.write_bytes(damaged)
             after, problems = seen(workspace)
             if not is_valid(name, damaged):

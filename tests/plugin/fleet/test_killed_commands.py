@@ -11,12 +11,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from random import Random
 
 import duckdb
 
 from tests.plugin.fleet.test_ingest import world
-from tests.slow import SLOW
+from tests.slow import SLOW, chance
 
 TIMES = 40 if SLOW else 2
 ROBOTS, EACH = (12, 40) if SLOW else (3, 6)
@@ -62,7 +61,7 @@ def missions(data: Path) -> list[tuple[object, ...]]:
 
 def test_killed_commands_lose_and_duplicate_no_mission(tmp_path: Path) -> None:
     test, logs = world(tmp_path, ROBOTS, EACH)
-    random = Random(17)
+    random = chance(17)
     argv = [*map(str, logs), "--fixture", str(test), "--robot", "{folder}", "--site", "north"]
     lasts = run(tmp_path, "ingest", *argv, "--to", "whole")
     expected = missions(tmp_path / "whole")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import subprocess
 import sys
 import time
@@ -18,7 +17,7 @@ from pytest_tarl.errors import MonitorError, TarlError
 from pytest_tarl.monitoring import watch, watch_state
 from pytest_tarl.monitoring.watch import Watch
 from tests.plugin.monitoring.missions import fixture, log, walks
-from tests.slow import SLOW
+from tests.slow import SLOW, chance
 
 TIMES = 30 if SLOW else 4
 
@@ -156,7 +155,7 @@ def test_killed_and_restarted_watch_saves_the_same_bytes(world: Path, tmp_path: 
     ]
     path.write_bytes(whole)
     subprocess.run([*command, str(tmp_path / "once.npz"), "--once"], check=False, capture_output=True)
-    moments = random.Random(7)
+    moments = chance(7)
     path.unlink()
     for n in range(TIMES):
         grown = whole[: (n + 1) * len(whole) // TIMES]
