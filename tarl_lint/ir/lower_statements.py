@@ -18,6 +18,7 @@ from tarl_lint.read.source import Module
 # evaluate the subject again
 MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that are not dataclass fields
+PASSED = "InitVar"  # part of the annotation of a field that a dataclass passes on to `__post_init__`
 
 
 def lower_module(module: Module) -> ir.Program:
@@ -171,13 +172,14 @@ class Lowering(Expressions):
                 bases,
                 body,
                 decorators,
-                tuple(_annotated(node)),
+                tuple(name for name, _ in _annotated(node)),
                 [
                     (k.arg, self.expr(k.value, scope))
                     for k in node.keywords
                     if k.arg is not None and k.arg != "metaclass"
                 ],
                 next((self.expr(k.value, scope) for k in node.keywords if k.arg == "metaclass"), None),
+                frozenset(name for name, kind in _annotated(node) if PASSED in kind),
             )
         ]
 
@@ -276,10 +278,10 @@ if hasattr(ast, "TryStar"):
     STATEMENTS[ast.TryStar] = Lowering._try
 
 
-def _annotated(node: ast.ClassDef) -> Iterator[str]:
-    """Yield the names that a class body annotates, except class variables."""
+def _annotated(node: ast.ClassDef) -> Iterator[tuple[str, str]]:
+    """Yield the names that a class body annotates, with their annotations, except class variables."""
     for part in node.body:
         if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
             kind = ast.unparse(part.annotation)
             if not kind.strip("'\"").removeprefix("typing.").removeprefix("t.").startswith(NO_FIELDS):
-                yield part.target.id
+                yield part.target.id, kind

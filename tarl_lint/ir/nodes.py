@@ -336,6 +336,7 @@ class Class(Stmt):
     fields: tuple[str, ...] = ()  # names that the class body annotates, such as `x: int`
     keywords: Sequence[tuple[str, Expr]] = ()  # except the metaclass
     metaclass: Expr | None = None
+    passed: frozenset[str] = frozenset()  # the `fields` with `InitVar`, which `__post_init__` gets
     control: object = None
 
 

@@ -21,7 +21,6 @@ from tarl_lint.memory.values import (
     Obj,
     Value,
     const,
-    function_of,
     in_order,
     join,
     join_all,
@@ -51,7 +50,7 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
     given = dict(named)
     rest = given.pop("*", None)
     mapping = given.pop("**", None)
-    numbered, arriving, stored = _named_tuple(cls), iter(plain), dict[str, Value]()
+    numbered, arriving, passed = _named_tuple(cls), iter(plain), dict[str, Value]()
     for number, (owner, name) in enumerate(_fields(cls)):
         options = _options(ctx, owner, name)
         inside = not _says(options, "init", False)
@@ -61,11 +60,13 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
         if value is None and mapping is not None and inside:
             value = expressions.read_item(ctx, mapping, const(name))
         if value is None or value is BOTTOM:
-            passed = rest if inside else None
-            value = passed if passed is not None else _preset(ctx, owner, name, frame, call, number)
+            unpacked = rest if inside else None
+            value = unpacked if unpacked is not None else _preset(ctx, owner, name, frame, call, number)
         if value is None:
             continue
-        stored[name] = value
+        if name in _passed(owner):
+            passed[name] = value
+            continue
         ctx.store.put((obj, name), value)
         if numbered:
             ctx.store.put((obj, item_field(number)), value)
@@ -75,20 +76,24 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
     if plain and external and not numbered:
         updates.add_element(ctx, pointer(obj), Value(call_contexts.all_used(ctx, (plain, {}))))
     senders.inherit(ctx, obj, arguments, frame, call)
-    _after(ctx, obj, cls, stored, frame, call)
+    _after(ctx, obj, cls, passed, frame, call)
+
+
+def _passed(cls: Obj) -> frozenset[str]:
+    """Return the fields of a class that its objects do not have, because `__post_init__` gets their values."""
+    statement = cls.info.statement if isinstance(cls.info, ClassInfo) else None
+    return frozenset() if statement is None else statement.passed
 
 
 def _after(
-    ctx: Interpreter, obj: Obj, cls: Obj, stored: Mapping[str, Value], frame: Frame, call: ir.Call
+    ctx: Interpreter, obj: Obj, cls: Obj, passed: Mapping[str, Value], frame: Frame, call: ir.Call
 ) -> None:
-    """Call `__post_init__`; its parameters are the fields with `InitVar`, which have the same names."""
+    """Call `__post_init__` with the values of the fields with `InitVar`, in the order of the fields."""
     for owner in lineage(cls):
         after = ctx.store.get((owner, "__post_init__"))
         if after is not None:
-            taken = [function_of(one) for one in after.objects]
-            names = {p.name for function in taken if function is not None for p in function.parameters}
-            given = {name: value for name, value in stored.items() if name in names}
-            calls.call_value(ctx, heap.bind(ctx, after, obj, owner), ([], given), frame, call)
+            given = [passed.get(name, UNKNOWN) for of, name in _fields(cls) if name in _passed(of)]
+            calls.call_value(ctx, heap.bind(ctx, after, obj, owner), (given, {}), frame, call)
             return
 
 
@@ -189,8 +194,8 @@ def as_sequence(ctx: Interpreter, it: Invocation) -> Value:
 def described_fields(ctx: Interpreter, it: Invocation) -> Value:
     """Return the fields of a dataclass as objects with names; a loop over them is executed element by element."""
     given = it.arguments[0][0] if it.arguments[0] else UNKNOWN
-    classes = [o if o.kind == "class" else o.info for o in given.pts]
-    if len(classes) != 1 or not isinstance(cls := classes[0], Obj) or cls.kind != "class":
+    classes = {o if o.kind == "class" else o.info for o in given.pts}
+    if len(classes) != 1 or not isinstance(cls := classes.pop(), Obj) or cls.kind != "class":
         return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     listed = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
     listed.name = heap.MEMBERS

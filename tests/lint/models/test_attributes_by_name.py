@@ -122,6 +122,15 @@ def on(msg):
     out.publish(len(dataclasses.fields(State)))  # clean
     out.publish(dataclasses.fields(msg.data)[0])  # data
 rospy.Subscriber("in", Float64, on)
+### fields of one of several objects of a dataclass
+def on(msg):
+    for state in [State(x=msg.data), State(x=msg.data + 1.0)]:
+        copied = State()
+        for field in dataclasses.fields(state):
+            setattr(copied, field.name, getattr(state, field.name))
+        out.publish(copied.x)  # data
+        out.publish(copied.y)  # clean
+rospy.Subscriber("in", Float64, on)
 ### slots of an analysed class
 class Slotted:
     __slots__ = ("x", "y")

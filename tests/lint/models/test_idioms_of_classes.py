@@ -63,6 +63,20 @@ def scan(msg):
     out.publish(Pose(msg.data, 1.0).yaw)  # clean
     out.publish(Pose(1.0, msg.data).yaw)  # scan:data
     out.publish(Pose(1.0, msg.data).x)  # clean
+### parameters that get the fields with `InitVar` in their order, under other names
+@dataclasses.dataclass
+class Pose:
+    low: dataclasses.InitVar[float]
+    x: float
+    high: dataclasses.InitVar[float] = 0.0
+    def __post_init__(self, least, most):
+        self.least, self.most = least, most
+def scan(msg):
+    out.publish(Pose(msg.data, 1.0, 2.0).least)  # scan:data
+    out.publish(Pose(msg.data, 1.0, 2.0).most)  # clean
+    out.publish(Pose(1.0, 2.0, high=msg.data).most)  # scan:data
+    out.publish(Pose(1.0, 2.0, msg.data).high)  # clean
+    out.publish(Pose(1.0, msg.data).most)  # clean
 ### attributes of an object with `__getattr__`, stored as entries of its `__dict__`
 class Latest:
     def __init__(self):
