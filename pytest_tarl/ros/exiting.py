@@ -1,22 +1,24 @@
 """Make `os._exit` of a node end only this node.
 
-A forked child of a node is a copy of pytest. It may compute and end, but if it came back to the scheduler, it would run
-the rest of the tests a second time. It is therefore ended at the first call of the ROS API that waits.
+A forked child of a node is a copy of pytest. It may compute and end as a program does, but if it came back to the
+scheduler, it would run the rest of the tests a second time. It is therefore ended at the first call that waits.
 """
 
 from __future__ import annotations
 
 import os
+import sys
+import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn
 
 from greenlet import getcurrent, greenlet
 
 from pytest_tarl.ros.scheduler import running_task
 
-_RETURNED = b"""tarl: a child process that a node forked waits or ends in the in-process ROS, which serves only its
-parent. The child was ended. Let it end with os._exit, or start it as a program of its own with subprocess.
+_WAITED = b"""tarl: a child process that a node forked waits in the in-process ROS, which serves only its parent. The
+child was ended. Let it only compute and end, or start it as a program of its own with subprocess.
 """
 
 
@@ -46,15 +48,46 @@ def exits_of_nodes() -> Iterator[None]:
 
 
 def _fork(fork: Callable[[], int], leave: Callable[[int], Any]) -> Callable[[], int]:
-    def returned(*_: object) -> None:
-        os.write(2, _RETURNED)
+    def waited(*_: object) -> None:
+        os.write(2, _WAITED)
         leave(1)
 
+    def failed(_: object, error: BaseException) -> None:
+        status = _status(error)
+        _flush()
+        leave(status)
+
+    def finished(_: object) -> None:
+        _flush()
+        leave(0)
+
     def forked() -> int:
+        task = running_task()
+        if task is not None:
+            _flush()  # else the child would write the same text again
         child = fork()
-        if not child and running_task() is not None:
-            task = getcurrent()
-            task.parent = greenlet(returned, task.parent)
+        if not child and task is not None:
+            worker = getcurrent()
+            worker.parent = greenlet(waited, worker.parent)
+            vars(task.process).update(failed=failed, finished=finished)
         return child
 
     return forked
+
+
+def _status(error: BaseException) -> int:
+    """Return the exit status for an exception that ends a program; print what Python prints."""
+    if not isinstance(error, SystemExit):
+        traceback.print_exception(error)
+        return 1
+    if isinstance(error.code, int):
+        return error.code
+    if error.code is not None:
+        print(error.code, file=sys.stderr)
+    return int(error.code is not None)
+
+
+def _flush() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, OSError, ValueError):  # None, a full disk, or closed
+            stream.flush()
