@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, isclose
+from math import inf
 from typing import Any
 
 from pytest_tarl.spaces import Point, Space, Span
@@ -256,9 +256,12 @@ class Stress:
 
 def place_on(ray: Ray, one: Failure) -> float | None:
     """Return where a failure lies on the ray of a single direction, or None if it lies elsewhere."""
-    t = one.distance / ray.length
-    alone = one.names == ray.names and len(ray.names) == 1
-    return t if alone and isclose(ray.value(t), one.point[ray.names[0]]) else None
+    if one.names != ray.names or len(ray.names) != 1:
+        return None
+    (name,) = ray.names
+    number, end, usual = one.point[name], ray.farthest[name], ray.space.nominal[name]
+    towards = (number > usual) == (end > usual) if ray.continuous else number == end
+    return one.distance / ray.length if towards else None
 
 
 def failure(space: Space, point: Point) -> Failure:

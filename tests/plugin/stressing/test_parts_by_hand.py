@@ -31,6 +31,7 @@ from pytest_tarl.stressing.findings import (
     Statements,
     contains,
     failure,
+    place_on,
 )
 from pytest_tarl.stressing.generating import _number, _point
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee, hopeful
@@ -46,7 +47,7 @@ from pytest_tarl.stressing.loss_noise import (
 from pytest_tarl.stressing.mapping import importance, lost
 from pytest_tarl.stressing.margins import margins, text
 from pytest_tarl.stressing.prediction import _normal, _within
-from pytest_tarl.stressing.rays import Ray
+from pytest_tarl.stressing.rays import Ray, rays
 from pytest_tarl.stressing.regions import end, regions
 from pytest_tarl.stressing.surrogates import variance
 from pytest_tarl.stressing.words import (
@@ -292,6 +293,18 @@ def test_containing_failures_must_be_farther() -> None:
         assert len(_apart([larger, small], evaluator)) == kept
     aside = near(1.005, slope=-0.5, mud=2.0)
     assert _apart([aside, small], evaluator) == [aside, small]
+
+
+def test_each_place_along_a_single_direction_is_found_on_its_own_ray_only() -> None:
+    space = space_of(mud=Drift.range(-1.0, 1.6, nominal=-0.78), tool=Drift.choice("old", "new", "worn"))
+    along = rays(space, {"mud": [0.0]})
+    for ray in along:
+        for t in ray.places:
+            one = failure(space, ray.point(t))
+            assert place_on(ray, one) == pytest.approx(t)
+            assert [other for other in along if place_on(other, one) is not None] == [ray]
+    both = failure(space, {"mud": 0.0, "tool": 1.0})
+    assert all(place_on(ray, both) is None for ray in along)
 
 
 def test_nearer_drift_lies_on_the_nominal_side_everywhere() -> None:
