@@ -22,6 +22,7 @@ from pytest_tarl.ros.messages.node_workspaces import packages
 from pytest_tarl.ros.messages.package_modules import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.missing import as_read_by, refuse, unsupported_module
+from pytest_tarl.ros.node_output import output_of_nodes
 from pytest_tarl.ros.opencv_windows import windows_discarded
 from pytest_tarl.ros.reexports import is_reexported, reexported
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
@@ -231,6 +232,7 @@ def standins_installed(
             exits_of_nodes(),
             signals_of_nodes(),
             interpreter_kept(),
+            output_of_nodes(),
         ):
             yield
     finally:

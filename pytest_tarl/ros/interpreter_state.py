@@ -12,14 +12,6 @@ from typing import Any
 from pytest_tarl.ros.scheduler import running_task
 
 
-def _for_others(close: Callable[[], None]) -> Callable[[], None]:
-    def choose() -> None:
-        if running_task() is None:
-            close()
-
-    return choose
-
-
 def _noted(change: Callable[..., None], before: list[Path]) -> Callable[..., None]:
     def choose(*args: Any, **named: Any) -> None:
         if running_task() is not None and not before:
@@ -48,16 +40,11 @@ def _working_directory_kept() -> Iterator[None]:
 
 @contextmanager
 def interpreter_kept() -> Iterator[None]:
-    """Let a node's `close()` of a standard stream do nothing; restore what else a node changes in the interpreter.
+    """Restore what nodes change in the interpreter.
 
     That is the recursion limit, removed import paths and finders, and the working directory.
     """
     limit, paths, finders = sys.getrecursionlimit(), [*sys.path], [*sys.meta_path]
-    kept = []
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(AttributeError):  # None, or a stream without settable attributes
-            stream.close = _for_others(stream.close)  # type: ignore[method-assign]
-            kept.append(stream)
     try:
         with _working_directory_kept():
             yield
@@ -65,6 +52,3 @@ def interpreter_kept() -> Iterator[None]:
         sys.setrecursionlimit(limit)
         sys.path.extend(one for one in paths if one not in sys.path)
         sys.meta_path.extend(one for one in finders if one not in sys.meta_path)
-        for stream in kept:
-            with suppress(AttributeError):
-                del stream.close
