@@ -1,8 +1,8 @@
 """TARL001: a file cannot be analysed.
 
 The file is not valid Python 3, cannot be decoded, or is nested too deeply. If the file is Python 2, the message says
-so. tarl-lint analyses the other files without this one and misses flows that pass through it. Fix the file, port it
-to Python 3, or exclude it.
+so. tarl-lint analyses the other files, but misses flows through this one. Fix the file, port it to Python 3, or exclude
+it.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 A value computed from a received message is part of what the publish call sends (an *explicit* flow). Most robot
 programs exist to do this. The finding shows which input affects which output, and the taint list shows the statements
-in between. Accept the intended flows with `--write-baseline`; later runs report only new flows.
+on the way. Accept the intended flows with `--write-baseline`; later runs report only new flows.
 """
 
 from __future__ import annotations

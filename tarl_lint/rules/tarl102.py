@@ -1,12 +1,12 @@
 """TARL102: a subscribed topic decides what, or whether, a node publishes.
 
 The publish call sends no data of the message, but a condition on the message chooses between constants, or between
-publishing and not publishing (an *implicit* flow). A statement does not depend on a loop merely because it follows the
-loop. The mere arrival of a message is not a condition.
+publishing and not publishing (an *implicit* flow). A statement after a loop does not depend on the condition of the
+loop. The arrival of a message does not count as a condition.
 
 In rclpy, an action server calls its `execute_callback` only if its `goal_callback` accepts the goal. A condition in
-`goal_callback` therefore decides what `execute_callback` publishes. A condition on the call of `goal_handle.execute()`
-in the `handle_accepted_callback` has the same effect.
+`goal_callback` therefore decides what `execute_callback` publishes. So does a condition on the call of
+`goal_handle.execute()` in the `handle_accepted_callback`.
 """
 
 from __future__ import annotations

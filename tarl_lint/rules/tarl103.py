@@ -1,9 +1,9 @@
 """TARL103: a request influences the response of its own service or action server.
 
 A service exists to answer its request, and an action server to reach its goal. A flow from a request to its own
-response is therefore expected, and a workspace may have hundreds of such flows. This rule is off by default. Turn the
-rule on with `--extend-select TARL103`, or with `extend-select = ["TARL103"]` in the settings. A flow from a request to
-a topic, or to the response of another service, is reported as TARL101 or TARL102.
+response is therefore expected, and a workspace may have hundreds of such flows. For this reason, the rule is off by
+default. Turn it on with `--extend-select TARL103`, or with `extend-select = ["TARL103"]` in the settings. A flow from a
+request to a topic, or to the response of another service, is reported as TARL101 or TARL102.
 """
 
 from __future__ import annotations

@@ -1,32 +1,30 @@
 """TARL201: state is shared between threads without the lock that guards it elsewhere.
 
-In rospy, every subscriber, timer and service runs its callbacks in a thread of its own, alongside the main loop. In
+In rospy, every subscriber, timer and service runs its callbacks in a separate thread, alongside the main loop. In
 rclpy, callbacks run in several threads only if the node starts threads itself, or if it uses a MultiThreadedExecutor
-with callback groups that allow parallel calls. Suppose that one thread accesses an attribute or global under a lock,
-and another thread changes or reads it without the lock. Then the other thread may see a partial change, or a change may
-be lost.
+with callback groups that allow parallel calls. If one thread accesses an attribute or global under a lock, and another
+thread changes or reads it without the lock, the other thread may see a partial change, or a change may be lost.
 
-An access is reported only if other code guards the same state with a lock, and only if the access can go wrong:
+The rule reports an access only if other code guards the same state with a lock, and only if the access can go wrong:
 
 - One thread changes a container while another thread reads the container.
 - A value is incremented or changed in place.
 - A function reads the state twice and may see two different values.
 - A function reads several values that belong together.
 
-Reading a value once is harmless if threads replace the value only as a whole, because Python does this atomically. The
-rule also does not report
+Reading a value once is harmless if threads only replace the value as a whole, because Python does this atomically. The
+rule does not report
 
-- flags that are set to constants,
-- checks before the lock is taken, such as whether a value exists, how long it is, or whether to return,
+- such reads, and flags that are set to constants,
+- checks before the lock is taken, for example whether a value exists or how long it is,
 - methods of objects that may do their own locking,
-- state under a lock that is taken only if it is free (`acquire(blocking=False)`), because such a lock only keeps an
-  activity from running twice,
+- state under a lock that is taken only if it is free (`acquire(blocking=False)`), because such a lock only prevents two
+  runs of the same code at once,
 - coroutines that an event loop runs later,
 - code that runs before the threads start,
 - callbacks that are registered in opposite branches of an `if`, so that only one of them ever runs.
 
-If a function is called with the lock in one place and without the lock in another, the message names the call without
-the lock.
+If one caller of a function has the lock and another does not, the message names the call without the lock.
 """
 
 from __future__ import annotations

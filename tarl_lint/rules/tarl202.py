@@ -1,19 +1,20 @@
 """TARL202: a command follows a sensor without limit.
 
-A command for actuators, such as a velocity, a throttle or an angle, is computed from a number in a received message,
-and nothing bounds the number on the way. A bound is a function such as `min`, `max` or `clip`, a function with a
-bounded result (`sin`, `atan2`), or a comparison that replaces values that are too large. Sensors sometimes send
-infinity, jumps or invalid values, and the command follows them. Clamp the value at the reported line, where it is
-computed.
+The program computes a command for actuators, such as a velocity, a throttle or an angle, from a number in a received
+message, and nothing bounds this number. Sensors sometimes send infinity, jumps or invalid values, and the command
+follows them. Clamp the value at the reported line, where it is computed: with `min`, `max` or `clip`, with a function
+whose result is bounded (`sin`, `atan2`), or with a comparison that replaces values that are too large.
 
 A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound the value
 from above.
 
-The rule treats messages such as `LaserScan`, `Odometry` and `Imu` as sensor data. A plain number is sensor data if the
-name of its topic says so (`/range`, `/cte`). The rule does not report values of other messages, such as commands, goals
-and parameters, because a person or a planner may have chosen them. It does not report values that pass through code
-outside the analysed files. It does not report speeds that may be measurements, such as a Float64 on `/speed` that is
-computed from ticks, from `twist`, or from a distance and a time.
+Messages such as `LaserScan`, `Odometry` and `Imu` count as sensor data. A plain number counts as sensor data if the
+name of its topic suggests it (`/range`, `/cte`). The rule does not report
+
+- values of other messages, such as commands, goals and parameters, because a person or a planner may have chosen them,
+- values that pass through code outside the analysed files,
+- speeds that may be measurements, such as a Float64 on `/speed` that is computed from ticks, from `twist`, or from a
+  distance and a time.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """TARL203: a subscription has no effect.
 
-The callback ignores its messages: it does not store, publish, pass on, log or return anything, or no code ever reads
-what the callback stores. The subscription wastes bandwidth and time. Often the author forgot a line.
+The callback does not use its messages: it does not store, publish, pass on, log or return anything, or no code reads
+what it stores. The subscription wastes bandwidth and time. Often the author forgot a line.
 
-The rule does not report a callback that ignores the content of the message but does something when it arrives. Nor does
-the rule report callbacks that intentionally do nothing: `lambda msg: None`, or a parameter whose name starts with an
+The rule does not report a callback that does something when a message arrives but ignores its content. It does not
+report callbacks that intentionally do nothing, either: `lambda msg: None`, or a parameter whose name starts with an
 underscore.
 """
 

@@ -1,8 +1,8 @@
 """TARL204: a publisher never publishes.
 
 The topic is advertised, so other nodes see it and may wait for its messages. But no publish call uses the publisher,
-and the node does not pass the publisher to code that could publish. Usually the publish call is missing, or the
-publisher is no longer needed.
+and the node does not pass it to code that could publish. Usually the publish call is missing, or the publisher is no
+longer needed.
 """
 
 from __future__ import annotations

@@ -1,47 +1,46 @@
 """TARL301: a subscription has no publisher, and a publisher with a similar name has no subscriber.
 
-The two ends were probably meant to be connected. Their message types are equal, and their names differ only by a
-namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error but does not move.
-In this way, the keyboard teleoperation of the Kobuki lost its effect
-(https://github.com/aliasrobotics/RVD/issues/581). A robot also stands still if the launch file starts it in a
-namespace but its code publishes on `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
+The two were probably meant to be connected: they have the same message type, and their names differ only by a namespace
+(`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error but does not move. This defect
+disabled the keyboard teleoperation of the Kobuki (https://github.com/aliasrobotics/RVD/issues/581). Another robot stood
+still because the launch file started it in a namespace, but its code published on `/cmd_vel`
+(https://github.com/UoY-RoboStar/AURO/issues/5).
 
-Two names are also similar in these cases:
+Two names also count as similar in these cases:
 
-- A slash stands for an underscore (`/water/current` and `/water_current`).
+- One has a slash where the other has an underscore (`/water/current` and `/water_current`).
 - A word is abbreviated (`/cmd` and `/command`).
 - The words are in another order (`/scan_filtered` and `/filtered_scan`).
-- The words have the same meaning (`/gripper/state` and `/gripper/status`).
+- A word has the same meaning (`/gripper/state` and `/gripper/status`).
 - Both names are private to the same node (`~finished` and `~finish`).
 
-A launch file may also rename a node. Suppose that the code calls a node `elevator` and one of its topics `~floor`,
-and the launch file calls this node `lift`. Then the topic is `/lift/floor`, and a subscription to `/elevator/floor`
-has no publisher.
+The rule also reports private names of a renamed node. For example, if the code calls a node `elevator` and one of its
+topics `~floor`, and the launch file calls the node `lift`, the topic is `/lift/floor`, and a subscription to
+`/elevator/floor` has no publisher.
 
 Two names are not similar if they differ in a word of one or two letters (`wheel_fl` and `wheel_fr`). Names with fewer
 than five letters are similar only if two letters are exchanged (`/sacn` and `/scan`).
 
-Some nodes of a launch file are unknown: the source of a node may be missing, a node may compute the names of its
-topics, or a launch file that is missing may start further nodes. An unknown node might be the other end. In this case,
-the rule is stricter:
+Some nodes of a launch file may be *unknown*: their source is missing, they compute the names of their topics, or a
+missing launch file starts them. An unknown node might be the missing publisher or subscriber, so the rule then reports
+less:
 
-- The rule reports misspelt names, but not different namespaces or abbreviations.
-- The rule reports nothing if an unknown node mentions one of the two names in its remappings, parameters, arguments or
-  strings.
+- It reports misspelt names, but not different namespaces or abbreviations.
+- It reports nothing if an unknown node has one of the two names in its remappings, parameters, arguments or strings.
 
-An unknown node is disregarded if it cannot use the message type. A laser driver, for example, publishes no `Twist`.
-tarl-lint knows the types of well-known packages, and a C++ program of the workspace uses only the types that its files
-name.
+An unknown node is disregarded if it cannot use the message type: for example, a laser driver publishes no `Twist`.
+tarl-lint knows the types of well-known packages, and assumes that a C++ program of the workspace uses only the types
+that its files name.
 
-A sensor driver is recognised by its package, or by a word such as `lidar` or `gps` in its name. An unknown sensor
-driver matters only if it may also use one of the two names. There are three kinds of names that it may use: a name
-that it mentions, a name that is private to it, and a name whose last part is typical of sensor drivers.
-`/rear/scan` and `/points_raw` are typical; `/obstacles` is not.
+An unknown sensor driver (recognised by its package, or by a word such as `lidar` or `gps` in its name) is also
+disregarded if it cannot use either of the two names. It may use a name that it mentions, a name that is private to it,
+and a name whose last part is typical of sensor drivers: `/rear/scan` and `/points_raw` are typical; `/obstacles` is
+not.
 
 The rule reports nothing if no publisher has a similar name, because sensors, simulators and teleoperation are often
-started elsewhere. Of 23 topics without a similar publisher, in launch files that are known completely, only one was a
-mistake. The report of `--launch` lists such topics under "No publisher here", and the JSON report under `one_sided`.
-They do not fail the run.
+started elsewhere. In completely known launch files, only one of 23 topics without a similar publisher was a mistake.
+The report of `--launch` lists such topics under "No publisher here", and the JSON report under `one_sided`. They do not
+fail the run.
 """
 
 from __future__ import annotations

@@ -2,13 +2,13 @@
 
 ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. For example, some
 nodes use `Twist` and others `TwistStamped` (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). Types of
-two packages may also share a name, such as `std_msgs/String` and `my_msgs/String`.
+two packages may also have the same name, such as `std_msgs/String` and `my_msgs/String`.
 
 The rule compares clients and servers of a service or an action in the same way. If their types differ, a call fails in
 ROS 1, and the client waits forever in ROS 2.
 
 The rule considers only types that the code names directly. It compares the packages of two types only if both packages
-are known. If the program imports a message class from one of its own modules, the package is unknown.
+are known; if a program imports a message class from one of its own modules, the package is unknown.
 """
 
 from __future__ import annotations

@@ -1,15 +1,14 @@
 """TARL303: a subscription requests a stricter quality of service than its publisher offers.
 
 ROS 2 does not connect a `RELIABLE` subscription with a `BEST_EFFORT` publisher, nor a `TRANSIENT_LOCAL` subscription
-with a `VOLATILE` publisher. No message arrives. If the code gives a number instead of a profile, the profile is
-`RELIABLE` and `VOLATILE`. Drivers of sensors publish with `qos_profile_sensor_data`, which is `BEST_EFFORT`. A
-subscription with the number 10 therefore receives nothing from a laser scanner
-(https://github.com/ros2/ros2_documentation/issues/569).
+with a `VOLATILE` publisher. No message arrives. For example, sensor drivers publish with `qos_profile_sensor_data`,
+which is `BEST_EFFORT`. If the code of a subscription gives the number 10 instead of a profile, it is `RELIABLE` and
+`VOLATILE`, and receives nothing from a laser scanner (https://github.com/ros2/ros2_documentation/issues/569).
 
-The rule reports a connection only if the code determines both profiles as constants. A profile may come from another
-module, from a function, or from a table that lists topics with their profiles. In C++ programs of the workspace, the
-call that names the topic must contain the profile or a variable with the profile. The rule ignores profiles that a
-launch file may override (`qos_overriding_options`).
+The rule reports a connection only if both profiles are constant. A profile may come from another module, from a
+function, or from a table of topics and profiles. In C++ programs of the workspace, the call that names the topic must
+contain the profile or a variable with the profile. The rule ignores profiles that a launch file may override
+(`qos_overriding_options`).
 """
 
 from __future__ import annotations

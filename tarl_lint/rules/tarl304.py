@@ -5,16 +5,16 @@ the node `arm` is `/arm/home`, not `/home`. If the launch file renames a node, i
 too.
 
 Names are similar under the conditions of TARL301. Two names in the same namespace, such as `/arm/open` and
-`/arm/open_door`, are similar as well. In the root namespace, `dock` and `dock_robot` are similar only if few nodes
-offer a service of this type, so not with `Trigger`. Actions are compared in the same way as services.
+`/arm/open_door`, are similar as well. In the root namespace, `dock` and `dock_robot` are similar only for service types
+that few nodes offer, which excludes `Trigger`. Actions are compared in the same way as services.
 
 If some nodes are unknown or a launch file is missing, the rule reports only misspelt names that no unknown node
-mentions. An unknown sensor driver matters only if it may offer the type under one of the two names. A laser driver
-may offer a `Trigger` named `start_motor`, but not one named `release`.
+mentions. An unknown sensor driver is disregarded unless it may offer a service of this type under one of the two names.
+A laser driver may offer a `Trigger` named `start_motor`, but not one named `release`.
 
-The rule reports nothing if no server has a similar name, because the server may be started elsewhere; servers of
-drivers and controllers usually are. The report of `--launch` lists such services under "No server here" and such
-actions under "No action server here". The JSON report lists both under `one_sided`. They do not fail the run.
+The rule reports nothing if no server has a similar name, because the server may be started elsewhere, as is usual for
+drivers and controllers. The report of `--launch` lists such services under "No server here" and such actions under "No
+action server here". The JSON report lists both under `one_sided`. They do not fail the run.
 """
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
 """TARL305: two nodes publish commands on the same topic.
 
-The last message wins, so the robot jerks as it follows both nodes in turn. Give each node a topic of its own, and let a
-multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
+The last message wins, so the robot jerks as it follows both nodes in turn. Give each node a separate topic, and let a
+multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: both the game controller and the autonomous
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
 The rule covers commands such as `Twist` and `JointTrajectory`, and numbers on topics such as `wheel/command` or
-`left_thrust`. Each of the two nodes must compute its commands from a subscribed topic, or publish them in a timer
-or loop, as in a patrol that follows the clock. The rule also knows common programs that have no source in the
-workspace, such as `teleop_twist_joy`, `move_base` and `twist_mux`. At least one of the two nodes must have source.
+`left_thrust`. Each of the two nodes must compute its commands from a subscribed topic, or publish them in a timer or
+loop, as in a patrol that follows the clock. One of the two may also be a common program without source in the
+workspace, such as `teleop_twist_joy`, `move_base` and `twist_mux`.
 
-The rule does not cover nodes that only stop the robot, nor nodes that publish once. It does not cover nodes that
-are started under a condition known only on the robot, because two such nodes may be alternatives.
+The rule does not cover nodes that only stop the robot, nodes that publish once, and nodes that are started under a
+condition known only on the robot, because two such nodes may be alternatives.
 """
 
 from __future__ import annotations

@@ -1,18 +1,18 @@
 """TARL306: a loop continues to publish commands after its messages stop.
 
-A callback stores what it receives. A loop or timer computes a command from the stored value and publishes the command
-again and again. If the messages stop because a sensor hangs, a cable breaks or a node crashes, the robot continues with
+A callback stores what it receives, and a loop or timer repeatedly computes a command from the stored value and
+publishes it. If the messages stop because a sensor hangs, a cable breaks or a node crashes, the robot continues with
 the last command. For this reason, a Pioneer robot collided with expensive equipment
 (https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when the
 message is too old.
 
 The rule covers the commands of TARL305, such as velocities, trajectories, and numbers on topics such as
-`blade_controller/command`. The timer or loop publishes the commands directly or through functions. A callback must have
-stored their data in attributes, globals or tables.
+`blade_controller/command`. The timer or loop may publish the commands directly or through functions, and the callback
+may store the data in attributes, globals or tables.
 
-The rule reports nothing if the loop or timer may detect old messages. It may do so in these cases:
+The rule reports nothing if the program may detect old messages, which it assumes in these cases:
 
-- The code of the loop or timer reads the time. Sleeps and the stamps of messages do not count.
+- The code of the loop or timer reads the time (sleeping and reading the stamps of messages do not count).
 - The code of the loop or timer contains a word such as `timeout`, `last_` or `counter`.
 - A word such as `watchdog` or `deadline` occurs anywhere in the program.
 - The stored value is set to `None`, or the loop or timer resets or changes it.

@@ -1,21 +1,21 @@
 """TARL307: a launch file sets a parameter that the node does not have.
 
 The value has no effect, and the node uses its default. Often the parameter was renamed or misspelt. ROS gives no
-warning. For example, one filter used two unsuitable defaults, because the names in its parameter file did not match
-those of the node (https://github.com/manankharwar/fusioncore/issues/134).
+warning. For example, a filter used two unsuitable defaults, because the names in its parameter file did not match those
+of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
-In a parameter file of ROS 2, the section `gate:` is for the node `/gate`, not for `/robot/gate`. A node that is started
-in a namespace therefore gets no value of this section. The rule reports the section unless another section of the file
-gives the node the same parameters. A section without `ros__parameters` is reported as well. If the launch file renames
-a node, a section with the name that the node has in its code is also reported.
+In a parameter file of ROS 2, the section `gate:` applies to the node `/gate`, not to `/robot/gate`. A node that is
+started in a namespace therefore gets no values from this section. The rule reports the section unless another section
+of the file gives the node the same parameters. It also reports a section without `ros__parameters`, and, if the launch
+file renames a node, a section with the name that the node has in its code.
 
-The rule reports a parameter only if it could read the program of the node with all its imports, and only if the
-program states the names of all its parameters. The names may be literals, entries of tables and lists, arguments of
-functions, fields of classes, or parameters of dynamic_reconfigure in the workspace's `.cfg` files. A program may
-also compose a name from parts that are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper
-or `f"tray{n}.tare"` in a loop over `range(4)`. If some parts of a composed name are unknown, the rule accepts every
-name that can be formed from words and digits in the program. If a group sets a parameter for all its nodes, the
-rule reports the parameter only if none of the nodes has it.
+The rule reports a parameter only if it could read the program of the node with all its imports, and if all parameter
+names in the program are known. The names may be literals, entries of tables and lists, arguments of functions, fields
+of classes, or parameters of dynamic_reconfigure in the workspace's `.cfg` files. A program may also compose a name from
+parts that are known at each call, as in `get_param("~%s/%s" % (group, key))` in a helper or `f"tray{n}.tare"` in a loop
+over `range(4)`. If some parts of a composed name are unknown, the rule accepts every name that can be formed from words
+and digits in the program. If a group sets a parameter for all its nodes, the rule reports the parameter only if none of
+the nodes has it.
 
 In ROS 1, a launch file may set private parameters of a node by their full names, outside the node. The rule reports
 such a parameter if the same file sets another parameter that the node has, or if the node has a parameter with a
@@ -24,8 +24,8 @@ similar name.
 In ROS 1, the rule also reports a parameter that is set in the wrong namespace:
 
 - The launch file sets the private parameter `~gain`, but the program reads only `get_param("gain")`.
-- The launch file sets `gain` in the namespace, but only `get_param("~gain")` reads a parameter of this name. Every
-  program of the launch file must have been read.
+- The launch file sets `gain` in the namespace, but a parameter of this name is read only by `get_param("~gain")`. The
+  rule reports this only if it could read all programs of the launch file.
 """
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
 """TARL308: a remapping matches no name that the node uses.
 
-The remapping has no effect, so the two ends that it should connect stay separate. In the Kobuki, the multiplexer
-published on `cmd_vel_mux/output`, but the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that no node used. The
-robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
+The remapping has no effect, so the publisher and the subscription that it should connect stay separate. In the Kobuki,
+the multiplexer published on `cmd_vel_mux/output`, but the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that
+no node used. The robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
 
 A remapping from `/cmd_vel` also matches nothing if the node uses `cmd_vel` in the namespace `/robot`, where the topic
 is `/robot/cmd_vel`.
 
-The rule reports a remapping only if it could read all nodes to which the remapping applies, with all their imports.
-The names of their topics must be constant. No other string of the nodes may equal the remapped name or end with it.
-The private name `~path` and the longer name `front/path` do not use the name `path`. If a group has a remapping,
-the rule reports the remapping only if it matches nothing in any node of the group.
+The rule reports a remapping only if it could read all nodes to which the remapping applies, with all their imports, if
+the names of their topics are constant, and if no other string of the nodes equals the remapped name or ends with it.
+The private name `~path` and the longer name `front/path` do not count as uses of `path`. The rule reports a remapping
+of a group only if it matches nothing in any node of the group.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@ The callback raises AttributeError at its first message. rospy logs the error an
 runs without the data. An `Accel`, for example, has `linear` and `angular`, but no `accel`.
 
 The rule covers messages, services and actions that packages of the workspace define. It also covers messages of
-`std_msgs`, `geometry_msgs`, `nav_msgs`, `sensor_msgs` and a few other packages. Some fields exist in only one of ROS 1
-and ROS 2: a program with rclpy has no `header.seq`, no `stamp.secs` and no `K` in a `CameraInfo`.
+`std_msgs`, `geometry_msgs`, `nav_msgs`, `sensor_msgs` and a few other packages. Some fields exist only in ROS 1 or only
+in ROS 2: an rclpy program has no `header.seq`, no `stamp.secs` and no `K` in a `CameraInfo`.
 
 The rule checks the arguments with which the code creates messages, and every expression that is certainly a message:
 
@@ -15,8 +15,8 @@ The rule checks the arguments with which the code creates messages, and every ex
 - variables and attributes of `self` to which the code assigns only messages of one type,
 - elements of lists of messages.
 
-The rule reports nothing if the code tests the class of a variable, checks for the field by its name (`hasattr`), or
-handles AttributeError.
+The rule reports nothing if the code tests the class of a variable, checks for the field by name (`hasattr`), or handles
+AttributeError.
 """
 
 from __future__ import annotations

@@ -1,14 +1,13 @@
 """TARL310: two nodes of a launch file have the same name.
 
 ROS 1 refuses the launch file as a whole: *roslaunch file contains multiple nodes named …*. In ROS 2, both nodes start,
-and their parameters and services have the same names. A request then reaches one of the two nodes by chance. For
+and their parameters and services have the same names. A request then reaches either of the two nodes at random. For
 example, the launch files of a perception stack could not be started with one combination of arguments, because two
 nodes were named `to_pose_array` (https://github.com/strands-project/strands_perception_people/issues/212).
 
 The rule compares full names, including the namespace. Two nodes named `$(anon view)` in one file also get the same
-name. The rule does not cover nodes that an event starts. It also does not cover nodes without source if the launch
-file gives them no name. It does not cover nodes that are started under a condition known only on the robot, because
-two such nodes may be alternatives.
+name. The rule does not cover nodes that an event starts, nodes without source to which the launch file gives no name,
+and nodes that are started under a condition known only on the robot, because two such nodes may be alternatives.
 """
 
 from __future__ import annotations
