@@ -1,1 +1,1 @@
-"""Stress test (`--tarl-stress`): find the smallest drifts under which the guarantee of a recording fails."""
+"""Stress test (`--tarl-stress`): find the smallest drifts that break the guarantee of a recording."""

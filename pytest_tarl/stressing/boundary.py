@@ -1,7 +1,7 @@
 """Find the boundary along a ray: a coarse sweep, bisection, and confirmation on fresh seeds.
 
 A ray changes one direction (a declared parameter of the world) from its nominal value to one end of its range. `t` is
-the place on the ray, 0 at the nominal value and 1 at the end.
+the position on the ray: 0 at the nominal value, 1 at the end.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.fresh_values import Model
 from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
-COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
-RESOLUTION = 0.02  # width of the interval at which bisection stops, as a share of the declared range
-# replaces RESOLUTION while the failing end is undecided, because noise then hides the exact boundary
+COARSE, FINE = 16, 32  # maximum number of episodes per point: in the sweep, and near the boundary
+RESOLUTION = 0.02  # bisection stops when the interval is narrower than this share of the declared range
+# used instead of RESOLUTION while the failing end is undecided: noise then hides the exact boundary
 NOISY = 0.04
 
 
@@ -55,10 +55,11 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
 
 
 def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
-    """Return the values of t to confirm: the most promising ones, ascending, then values farther away.
+    """Return the values of t to confirm: the promising ones in ascending order, then values farther away.
 
-    The promising values are the nearest value that the model expects to be confirmed, and failing values with clearly
-    low margins. A value exactly at the boundary is not tested, because even many episodes rarely show a failure there.
+    Two kinds of values are promising: the nearest one that the model expects to be confirmed, and failing values whose
+    margin is clearly low. A value exactly at the boundary is not tested: its failures are too rare to show, even in
+    many episodes.
     """
     decided = sorted(t for t, one in curve.evidence.items() if one.result == "fails")
     if not decided:
@@ -73,13 +74,13 @@ def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
         nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
         chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
         chosen += [t for t in decided if t in curve.ray.extra]  # the ends of the declared `must_hold` range
-    # these values are tried last, in case the few episodes at nearer values failed by chance
+    # these are tried last; they help if the few episodes at nearer values failed by chance
     beyond = [t for t in decided if t > max(chosen)]
     return [*sorted(set(chosen)), *dict.fromkeys([*beyond[len(beyond) // 2 :][:1], *beyond[-1:]])]
 
 
 def _settle(curve: Curve, evaluator: Evaluator) -> None:
-    """Run more episodes at the nearest failing point while it is undecided, because its failures may be noise."""
+    """Run more episodes at the nearest failing point while it is undecided: its failures may be noise."""
     while curve.failing:
         nearest = curve.evidence[curve.failing[0]]
         if nearest.result != "open" or nearest.episodes >= FINE:

@@ -1,7 +1,7 @@
-"""Choose drifts to test on fresh seeds: chains from far beyond the boundary towards it.
+"""Choose drifts to test on fresh seeds: chains that start far beyond the boundary and approach it.
 
-The tests of a chain stop at the first drift that is not confirmed, so the drifts before it are confirmed in any case.
-Each drift is tested at the whole risk of the chain (fixed-sequence procedure; Maurer, Hothorn & Lehmacher 1995).
+The tests of a chain stop at the first drift that is not confirmed, which leaves the earlier ones confirmed. Each test
+therefore uses the chain's full risk, not a share of it (fixed-sequence procedure; Maurer, Hothorn & Lehmacher 1995).
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from pytest_tarl.stressing.evaluating import NEAREST, SIZES
 from pytest_tarl.stressing.guarantee import Part
 from pytest_tarl.stressing.nearest import Nearest
 
-# maximum distance at which the next drift counts as nearer, as a share of the distance of the last confirmed drift
+# the next drift counts as nearer if its distance is at most this share of the last confirmed drift's distance
 NEARER = 0.98
-# Limits of the probability that a test at the farther drifts of a chain shows too many failures. If it is at least
-# LIKELY, the chain tests only the failure rate. If it is below UNLIKELY, the chain tests only the loss.
+# Limits for the probability that the tests at the farther drifts of a chain show too many failures. If the probability
+# is at least LIKELY, the chain tests only the failure rate; if it is below UNLIKELY, only the loss.
 LIKELY, UNLIKELY = 0.5, 0.05
-ALIKE = 0.02  # two probabilities count as the same if they differ by at most this
-VETTED = 4  # maximum number of drifts at which SIZES[2] episodes run before a chain is chosen
-# a drift beyond the near end is chosen only if fresh episodes show its failure with at least this probability
+ALIKE = 0.02  # two probabilities that differ by at most this count as equal
+VETTED = 4  # maximum number of drifts that get SIZES[2] episodes before a chain is chosen
+# drifts beyond the near end are chosen only if fresh episodes show their failure with at least this probability
 POSSIBLE = 0.5
 # A chain tests these multiples of its near end before the near end itself, if it tests only the failure rate and the
-# same seeds fail under all drifts.
+# same seeds fail under all its drifts.
 OUTWARD = (1.12, 1.08, 1.04)
-# all other chains test these multiples of their near end before the near end itself
+# all other chains test this multiple of their near end before the near end itself
 BEFORE = (1.03,)
-# A chain tests these multiples of its near end after the near end itself. The steps grow, because several confirmations
-# in a row show that the model expected the boundary too far from nominal.
+# A chain tests these multiples of its near end after the near end itself. The steps grow: several confirmations in a
+# row mean that the model placed the boundary too far from nominal.
 INWARD = (0.96, 0.92, 0.86, 0.79, 0.72, 0.65, 0.58, 0.5)
-# multiples of the first drift that a chain of small steps tests
+# a chain of small steps tests these multiples of its first drift
 FINE = tuple(0.985**step for step in range(16))
-# multiples of a chain's near end among which the other drifts of the chain are chosen
+# the farther drifts of a chain are chosen among these multiples of its near end
 STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 
 
@@ -46,11 +46,12 @@ STRETCHES = (1.035, 1.065, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.7)
 class Plan:
     """How to choose the drifts of a chain.
 
-    The near end of the chain is the nearest drift that fails according to the model. `errors` is the error of the model
-    to allow for, in standard deviations. `depth` is the required excess over the guarantee, in units of what fresh
-    episodes can show. Each of `steps` adds a farther drift. A step has two numbers: the minimum probability that fresh
-    episodes show the failure of the added drift, and the minimum distance of this drift as a multiple of the distance
-    of the drift before it.
+    The near end of a chain is the nearest drift that fails according to the model.
+
+    - `errors`: assumed error of the model, in standard deviations
+    - `depth`: required excess over the guarantee, in units of what fresh episodes can show
+    - `steps`: one farther drift per step, described by two numbers: the minimum probability that fresh episodes show
+      its failure, and its minimum distance as a multiple of the previous drift's distance
     """
 
     errors: float
@@ -64,10 +65,10 @@ NEXT = Plan(0.35, 1.05, ((0.9, 1.03),))
 
 
 def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
-    """Return the drifts of a chain, all nearer than `limit`, in descending order of their distance from nominal.
+    """Return the drifts of a chain, farthest first, all nearer than `limit`.
 
-    If the model does not cover the nearest failing drift because of its options, the chain consists of this drift only.
-    The chain is empty if no tried drift fails. Raise BudgetSpentError.
+    If the options of the nearest failing drift are outside the model, the chain has only this drift. The chain is empty
+    if no drift has failed. Raise BudgetSpentError.
     """
     best, limit = nearest.best, NEARER * limit
     if best is None:
@@ -81,9 +82,10 @@ def chain(nearest: Nearest, plan: Plan, limit: float) -> list[Point]:
 
 
 def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
-    """Return the part of the guarantee that the tests of a chain should examine, according to the model.
+    """Return the part of the guarantee that a chain should test, according to the model.
 
-    The last drift of the chain, which is the nearest, decides. If the model is not clear, the tests examine both parts.
+    The model's prediction for the last (nearest) drift decides. If the prediction is not clear, the chain tests both
+    parts.
     """
     coordinates = nearest.coordinates
     if not chain or not all(map(coordinates.covers, chain)):
@@ -95,7 +97,7 @@ def part_of(nearest: Nearest, chain: Sequence[Point]) -> Part:
 
 
 def likely(nearest: Nearest, point: Point) -> bool:
-    """Return whether the model covers a drift and expects that fresh episodes show its failure."""
+    """Return whether the model covers a drift and expects fresh episodes to show its failure."""
     coordinates = nearest.coordinates
     if not coordinates.covers(point):
         return False
@@ -103,10 +105,10 @@ def likely(nearest: Nearest, point: Point) -> bool:
 
 
 def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
-    """Add drifts on the ray through a chain's near end, if the model covers that end.
+    """Add drifts on the ray through a chain's near end, if the model covers the near end.
 
-    A further drift takes fewer episodes in this chain than in a new one. The nominal episodes have run already, and a
-    test of the failure rate first runs the seeds that failed before.
+    One more drift needs fewer episodes in this chain than in a new one: the nominal episodes have already run, and a
+    test of the failure rate starts with the seeds that failed before.
     """
     coordinates = nearest.coordinates
     if not chain or not coordinates.covers(chain[-1]):
@@ -128,11 +130,11 @@ def finer(nearest: Nearest, chain: Sequence[Point], part: Part) -> list[Point]:
 
 
 def closer(nearest: Nearest, confirmed: Point) -> list[Point]:
-    """Return a chain of drifts in small steps that begins a little nearer than a confirmed drift.
+    """Return a chain of drifts in small steps that starts slightly nearer than a confirmed drift.
 
     The drifts lie on the ray through one of three drifts: the confirmed one, the nearest predicted one, or the nearest
     one that failed in the search. The one most likely to be confirmed is chosen. The chain is empty if the model does
-    not cover the confirmed drift, or if no tried drift fails.
+    not cover the confirmed drift, or if no drift has failed.
     """
     coordinates = nearest.coordinates
     if not coordinates.covers(confirmed) or nearest.best is None:
@@ -154,11 +156,11 @@ def closer(nearest: Nearest, confirmed: Point) -> list[Point]:
 
 
 def clear(nearest: Nearest) -> list[Point]:
-    """Return up to three drifts in several directions that failed in the search, the farthest one first.
+    """Return up to three drifts in several directions that failed in the search, farthest first.
 
-    They are tested if none of the predicted drifts is confirmed, because the model may be wrong. All failed drifts are
-    sorted from the farthest to the nearest. The three are those in the middle of this list, at three quarters, and at
-    its end. The search runs no further episodes at them.
+    They are tested if none of the predicted drifts is confirmed, because the model may be wrong. The failed drifts are
+    sorted from farthest to nearest; the three are those at one half, at three quarters and at the end of this list. The
+    search runs no further episodes at them.
     """
     usual, evaluator = nearest.evaluator.space.nominal, nearest.evaluator
     found = [
@@ -174,10 +176,10 @@ def clear(nearest: Nearest) -> list[Point]:
 
 
 def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
-    """Run further episodes at the nearest predicted drifts; return the first that still fails by the model.
+    """Run more episodes at the nearest predicted drifts; return the first that the model still expects to fail.
 
-    The further episodes are needed because the model often errs at the nearest of many predicted drifts. Return None if
-    no drift fails. Raise BudgetSpentError.
+    The model often errs at the nearest of many predicted drifts, so these need more episodes. Return None if no drift
+    fails. Raise BudgetSpentError.
     """
     evaluator = nearest.evaluator
     draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} vetting {len(nearest.tried)}")
@@ -194,11 +196,11 @@ def _vetted(nearest: Nearest, plan: Plan) -> Point | None:
 
 
 def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Point]:
-    """Return one drift for each step of the plan, all nearer than `limit`, the farthest one first.
+    """Return one drift for each step of the plan, farthest first, all nearer than `limit`.
 
-    Candidates are multiples of `near` and the drifts tried before. A step takes the nearest candidate that is likely
-    enough to be confirmed. If there is none, it takes the nearest one of about the largest probability. The plan ends
-    early if no candidate has at least the probability `POSSIBLE`.
+    Candidates are multiples of `near` and drifts tried before. Each step takes the nearest candidate that is likely
+    enough to be confirmed. If there is none, it takes the nearest of those whose probability is about the largest. The
+    plan ends early if every candidate's probability is below `POSSIBLE`.
     """
     coordinates = nearest.coordinates
     vectors = _sorted([*_multiples(nearest, near), *nearest.vectors()])
@@ -219,8 +221,8 @@ def _beyond(nearest: Nearest, plan: Plan, near: Point, limit: float) -> list[Poi
 def _chances(nearest: Nearest, near: Point, vectors: Vector) -> Vector:
     """Return the probabilities that fresh episodes show a failure at vectors.
 
-    If fresh episodes are likely to show that the near end fails too often, only the failure rate counts, because the
-    whole chain is then tested for it.
+    If fresh episodes are likely to show too many failures at the near end, only the failure rate counts, because then
+    the whole chain tests only the failure rate.
     """
     model = nearest.model()
     if part_of(nearest, [near]) == "rate":
@@ -235,7 +237,7 @@ def _multiples(nearest: Nearest, near: Point) -> list[Vector]:
 
 
 def _sorted(vectors: list[Vector]) -> Vector:
-    """Return vectors by their lengths, ascending; shape (drifts, ranges)."""
+    """Return vectors sorted by length, shortest first; shape (drifts, ranges)."""
     found = np.array(vectors)
     ordered: Vector = found[np.argsort(np.linalg.norm(found, axis=1), kind="stable")]
     return ordered

@@ -1,4 +1,4 @@
-"""Find combinations of directions that break the guarantee although each direction alone holds.
+"""Find combinations of directions that break the guarantee, even where no single direction breaks it.
 
 The combinations are confirmed on fresh seeds.
 """
@@ -30,37 +30,35 @@ from pytest_tarl.stressing.rate_tests import RateTests
 from pytest_tarl.stressing.rays import Ray, distance, joined
 from pytest_tarl.stressing.trimming import broken, trimmed
 
-# pairs of directions are tested at this share of the way to each boundary, where the guarantee holds for each direction
-# alone
+# pairs are tested at this share of the way to both boundaries, where neither direction alone breaks the guarantee
 INSIDE = 0.9
-FIRST = 0.44  # share of the budget for the first search for the nearest failing drift
-# share of the budget after which the first chains of tests stop, so that the model can learn from them before the next
-# chains
+FIRST = 0.44  # share of the budget for the first search
+# the first chains of tests stop at this share of the budget, so that the model can learn from them
 BEGUN = 0.7
-# share of the budget after which all chains of tests stop, so that enough episodes are left for the single directions
+# all chains of tests stop at this share of the budget, to keep episodes for the single directions
 CONFIRMED = 0.85
-LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
-ALONE = 3  # number of rounds of the search with nominal options before other options are searched
-REFINED = 0.08  # share of the budget for the search that runs between the first two chains of tests
-TRIMMED = 0.1  # maximum share of the budget for moving single directions of a confirmed drift towards nominal
-FURTHER = 6  # maximum number of further searches, each followed by a chain, once the planned chains have run
+LAST = 0.85  # pairs and evolution stop at this share of the budget, to keep episodes for confirmation
+ALONE = 3  # rounds of the search with nominal options, before other options are searched
+REFINED = 0.08  # share of the budget for the search between the first two chains of tests
+TRIMMED = 0.1  # maximum share of the budget for trimming a confirmed drift
+FURTHER = 6  # maximum number of searches after the planned chains; a chain follows each
 EXPLORED = 0.06  # maximum share of the budget for each of these FURTHER searches
-ATTEMPTS = 2  # maximum number of chains of tests; the search stops at the first chain that confirms a drift
-RECORDED = 0.05  # share of the whole risk for the bound of the recorded mean reward
-# shares of the whole risk for the first chains; each further chain gets half of the risk that is left
+ATTEMPTS = 2  # the first search tests at most this many chains, and stops when one confirms a drift
+RECORDED = 0.05  # share of the total risk for the bound on the recorded mean reward
+# shares of the total risk for the first chains; each later chain gets half of what remains
 SHARES = (0.4, 0.3, 0.1, 0.05)
-QUICK = SIZES[0]  # number of episodes that the search runs at a drift that was confirmed to fail
-# A new chain is tested before an interrupted one is continued if its near end is much nearer: below this share of the
-# distance of the next drift of the interrupted chain.
+QUICK = SIZES[0]  # number of search episodes at a drift that was confirmed to fail
+# A new chain is tested before an interrupted one is continued if its near end is much nearer: if its distance is below
+# this share of the distance of the interrupted chain's next drift.
 AHEAD = 0.97
 
 
 @dataclass
 class Chain:
-    """A chain of drifts, farthest first, and its tests; `left` holds the drifts that are not decided yet.
+    """A chain of drifts, farthest first, and its tests; `left` holds the drifts still to be tested.
 
-    All drifts are chosen before the first episode of the pool, so the tests may be interrupted and continued at any
-    time (fixed-sequence procedure). Each drift is tested at the whole `risk` of the chain.
+    All drifts are chosen before the pool's first episode, so the tests can be interrupted and continued at any time
+    (fixed-sequence procedure). Each test uses the chain's full `risk`.
     """
 
     left: list[Point]
@@ -68,10 +66,10 @@ class Chain:
     pool: str
     risk: float
     part: Part
-    least: float | None = None  # lower bound of the nominal mean reward if the tests run no nominal episodes
+    least: float | None = None  # lower bound on the nominal mean reward; used instead of nominal episodes
 
     def __post_init__(self) -> None:
-        """Prepare the tests about the failure rate."""
+        """Prepare the tests of the failure rate."""
         self._rates = RateTests(self.evaluator, self.pool, self.risk)
 
     def confirm(self, point: Point) -> bool:
@@ -89,15 +87,15 @@ class Together:
 
     risk: float
     curves: Sequence[Curve]
-    # the confirmed failures, except those that hardly differ from a nearer failure
+    # confirmed failures, without those that hardly differ from a nearer one
     found: list[Failure] = field(default_factory=list)
     every: list[Failure] = field(default_factory=list)  # all confirmed failures
-    tried: int = 0  # number of drifts in several directions that the search tried
+    tried: int = 0  # number of drifts in several directions tried by the search
     margin_map: MarginMap | None = None
     chains: int = 0  # number of chains tested so far
-    tested: list[Point] = field(default_factory=list)  # drifts of the tested chains at which episodes ran
-    interrupted: Chain | None = None  # the last chain, if its tests stopped because the budget was spent
-    # drifts that fail according to the model but are not confirmed
+    tested: list[Point] = field(default_factory=list)  # drifts of the tested chains that have episodes
+    interrupted: Chain | None = None  # the last chain, if the budget ran out during its tests
+    # drifts that the model expects to fail, but that are not confirmed
     expected: list[Failure] = field(default_factory=list)
 
     @property
@@ -108,16 +106,16 @@ class Together:
     def confirm(
         self, chain: Sequence[Point], evaluator: Evaluator, part: Part = "both", *, unpaired: bool = False
     ) -> bool:
-        """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether one was confirmed.
+        """Test drifts on fresh seeds, farthest first, until one is not confirmed; return whether any was confirmed.
 
-        The tests examine this `part` of the guarantee; the choice of the part must not depend on the fresh seeds. With
-        `unpaired`, the tests compare with a lower bound of the recorded mean reward. This bound has its own share of
-        the risk and is the same in all chains, so the choice of drifts may depend on it.
+        The tests examine this `part` of the guarantee; it must be chosen independently of the fresh seeds. With
+        `unpaired`, they compare with a lower bound on the recorded mean reward instead of nominal episodes. This bound
+        has its own share of the risk and is the same in all chains, so the choice of drifts may depend on it.
 
-        Each test has the whole risk of the chain: suppose the guarantee holds at some of the drifts; an error then
-        requires that the first of these is confirmed. The seeds are new for each chain, so the choice of its drifts may
-        depend on the outcomes of earlier chains, and the model learns from these outcomes. Skip a drift that contains a
-        confirmed failure, which means that it changes the same values at least as much. Raise BudgetSpentError.
+        Each test uses the chain's full risk. This is valid because a false alarm requires an error at one particular
+        drift: the first one at which the guarantee holds. Each chain has new seeds, so its drifts may be chosen by the
+        outcomes of earlier chains, from which the model learns. A drift is skipped if it contains a confirmed failure,
+        which means that it changes the same values by at least as much. Raise BudgetSpentError.
         """
         usual, known = evaluator.space.nominal, self.confirmed
         chain = [
@@ -133,9 +131,9 @@ class Together:
         return self.run(Chain(chain, evaluator, f"chain {number}", risk, part, least))
 
     def run(self, chain: Chain) -> bool:
-        """Begin or continue the tests of a chain; return whether a further drift was confirmed.
+        """Start or continue the tests of a chain; return whether another drift was confirmed.
 
-        If the budget is spent, raise BudgetSpentError and keep the chain in `interrupted`.
+        If the budget runs out, keep the chain in `interrupted` and raise BudgetSpentError.
         """
         found, self.interrupted = False, chain
         try:
@@ -170,17 +168,16 @@ class Together:
 
 
 def _share(number: int) -> float:
-    """Return a chain's share of the risk by its number from 0; with RECORDED, all sum to 1."""
+    """Return the share of the risk for chain `number`, counted from 0; with RECORDED, all shares sum to 1."""
     if number < len(SHARES):
         return SHARES[number]
     return (1.0 - RECORDED - sum(SHARES)) * 0.5 ** (number - len(SHARES) + 1)
 
 
 def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
-    """Return the failures in the same order, without those that hardly differ from a nearer failure.
+    """Return the failures in the same order, without those that hardly differ from a nearer one.
 
-    A failure hardly differs from a nearer one if it contains the nearer one and its distance is less than APART times
-    as large.
+    A failure hardly differs from a nearer one if it contains that one and is less than APART times as far away.
     """
     kept: list[Failure] = []
     for one in sorted(found, key=lambda one: (one.distance, one.names)):
@@ -193,14 +190,15 @@ def _apart(found: Sequence[Failure], evaluator: Evaluator) -> list[Failure]:
 
 
 class Combined:
-    """The search in several directions: `begin` runs before the single directions are examined, `end` afterwards.
+    """The search in several directions: `begin` runs before the search in single directions, `end` after it.
 
-    If no drift near the nominal one fails while all options are nominal, each other option is searched separately.
+    With nominal options, the search may find no failing drift near nominal. Each other option is then searched
+    separately.
     """
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together
-        self._trimmed: list[Point] = []  # confirmed drifts at a jump whose directions were moved
+        self._trimmed: list[Point] = []  # confirmed drifts at a jump that were already trimmed
         risk = together.risk * _share(1)
         self.nearest = Nearest(evaluator, together.curves, risk=risk)
         self.options = [
@@ -231,7 +229,7 @@ class Combined:
             self._search_on()
 
     def end(self) -> None:
-        """Search for nearer failing drifts, then test pairs of directions, then confirm. Raise BudgetSpentError."""
+        """Search for nearer failing drifts, test pairs of directions, then confirm. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
             self._leading.improve()
@@ -240,7 +238,7 @@ class Combined:
         self._test(sorted(proposed, key=lambda one: -distance(self.evaluator.space, one)))
 
     def draw(self) -> None:
-        """Predict the map and nearest failures, if every ray has some episodes; run none."""
+        """Predict the map and the nearest failures, without new episodes; skip this if a ray has no episodes."""
         if not all(curve.evidence for curve in self.together.curves):
             return
         with self.evaluator.limited(0.0):
@@ -249,7 +247,7 @@ class Combined:
             self.together.margin_map = self.nearest.map()
 
     def _approach(self) -> None:
-        """Search with nominal options, and with each other option that may lead to a nearer failure.
+        """Search with nominal options, and with every other option that may lead to a nearer failure.
 
         Raise BudgetSpentError.
         """
@@ -260,7 +258,7 @@ class Combined:
         self._explore(ROUNDS)
 
     def _explore(self, rounds: int) -> None:
-        """Explore with nominal options, and with each other option that may lead to a nearer failure.
+        """Explore with nominal options, and with every other option that may lead to a nearer failure.
 
         Raise BudgetSpentError.
         """
@@ -279,7 +277,7 @@ class Combined:
     def _option_fails(self, option: Nearest) -> bool:
         """Return whether a few episodes show that an option alone fails. Raise BudgetSpentError.
 
-        The budget of the first search may have been spent before any episode ran on the option's own ray.
+        The first search may have spent its budget before any episode ran on the option's own ray.
         """
         evaluator, base = self.evaluator, option.coordinates.base
         found = evaluator.known(base) if evaluator.searched(base) else evaluator.glance(base)
@@ -287,21 +285,21 @@ class Combined:
 
     @property
     def _leading(self) -> Nearest:
-        """Return the search with the nearest failing drift; the one with nominal options if no drift fails."""
+        """Return the search that found the nearest failing drift, or the one with nominal options if none failed."""
         leading, least = self.nearest, inf
         for one in (*self.options, self.nearest):
             best = one.best
             if best is None or any(
                 other is not one and other.coordinates.covers(best) for other in self.options
             ):
-                # the search `other` has the options of `best`, so the model of `other` decides whether `best` fails
+                # `other` searches with the options of `best`: its model decides whether `best` fails
                 continue
             if one.distance(best) < least:
                 leading, least = one, one.distance(best)
         return leading
 
     def _confirm(self, plan: chains.Plan) -> bool:
-        """Test a chain that leads nearer to nominal than every confirmed drift. Raise BudgetSpentError."""
+        """Test a chain that ends nearer to nominal than every confirmed drift. Raise BudgetSpentError."""
         return self._test(self._next(plan))
 
     def _next(self, plan: chains.Plan) -> list[Point]:
@@ -309,11 +307,11 @@ class Combined:
         return chains.chain(self._leading, plan, limit)
 
     def _continue(self) -> bool:
-        """Continue the interrupted chain, or test a chain that leads nearer; return whether a drift was confirmed.
+        """Continue the interrupted chain, or test a nearer chain; return whether a drift was confirmed.
 
-        An interrupted chain needs fewer episodes than a new one, because its seeds have already run at the last drift.
-        It is not continued if the model, which has learned from these episodes, no longer expects a confirmation. Raise
-        BudgetSpentError.
+        Continuing a chain needs fewer episodes than a new chain, because its seeds have already run at the last drift.
+        The chain is dropped if the model, which has learned from these episodes, no longer expects a confirmation.
+        Raise BudgetSpentError.
         """
         begun = self.together.interrupted
         if begun is None or not chains.likely(self._leading, begun.left[0]):
@@ -323,9 +321,9 @@ class Combined:
         return (bool(nearer) and self._test(chain)) or self.together.run(begun)
 
     def _approach_confirmed(self) -> None:
-        """Test chains in small steps from the nearest confirmed drift, until a chain confirms no drift.
+        """Test chains in small steps from the nearest confirmed drift, until a chain confirms nothing.
 
-        The previous chains had larger steps, so they may have ended far from the boundary. Raise BudgetSpentError.
+        The earlier chains had larger steps and may have ended far from the boundary. Raise BudgetSpentError.
         """
         while known := self.together.confirmed:
             near = min(known, key=lambda one: (one.distance, one.names)).point
@@ -334,10 +332,9 @@ class Combined:
                 return
 
     def _trim(self) -> None:
-        """Move single directions of the nearest confirmed drift at a jump towards nominal; test it.
+        """Move single directions of the nearest confirmed drift towards nominal, if it is at a jump; test the result.
 
-        While a chain is interrupted, nothing is moved: its next drift may fail, too, and then there is no jump. Raise
-        BudgetSpentError.
+        Do nothing while a chain is interrupted: if its next drift also fails, there is no jump. Raise BudgetSpentError.
         """
         evaluator, known = self.evaluator, self.together.confirmed
         if not known or self.together.interrupted is not None:
@@ -355,9 +352,9 @@ class Combined:
             self._run([between(near, last), last], part)
 
     def _search_on(self) -> None:
-        """Explore and test further chains in turn, while episodes are left. Raise BudgetSpentError.
+        """Alternate between exploring and testing further chains while episodes are left. Raise BudgetSpentError.
 
-        The earlier chains end when no nearer drift is expected to fail. Another region may still contain such a drift.
+        The earlier chains stopped when the model expected no nearer drift to fail, but another region may contain one.
         """
         evaluator = self.evaluator
         for _ in range(FURTHER):
@@ -370,7 +367,7 @@ class Combined:
             self._confirm(chains.NEXT)
 
     def _test(self, chain: Sequence[Point]) -> bool:
-        """Test a chain with further drifts on the ray through its near end. Raise BudgetSpentError."""
+        """Test a chain, extended by drifts on the ray through its near end. Raise BudgetSpentError."""
         leading = self._leading
         part = chains.part_of(leading, chain)
         return self._run(chains.finer(leading, chain, part), part)
@@ -413,7 +410,7 @@ def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> No
 
 
 def _inside(curves: Sequence[Curve]) -> Iterator[tuple[Ray, float]]:
-    """Yield each ray with the largest t for a pair; skip options that fail the guarantee alone."""
+    """Yield each ray with the largest t for a pair; skip options that break the guarantee on their own."""
     for curve in curves:
         if not curve.failing:
             yield curve.ray, 1.0

@@ -1,6 +1,6 @@
 """Drifts as vectors: for each range, the difference from nominal in units of the declared range.
 
-Choices have no coordinate: their options are those of a base point.
+Choices have no coordinate; their options come from a base point.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Coordinates:
 
     @cached_property
     def spans(self) -> dict[str, Span]:
-        """Return the ranges by the name of their direction, in the order of the coordinates."""
+        """Return the ranges by direction, in the order of the coordinates."""
         return {name: one for name, one in self.space.extents.items() if isinstance(one, Span)}
 
     @cached_property
@@ -55,7 +55,7 @@ class Coordinates:
         )
 
     def point(self, vector: Vector) -> Point:
-        """Return the point at a vector, whose coordinates are clipped to the ranges."""
+        """Return the point at a vector; coordinates outside the ranges are clipped."""
         found = dict(self.base)
         for (name, one), number in zip(self.spans.items(), np.clip(vector, self.low, self.high), strict=True):
             usual = nominal(one)
@@ -68,9 +68,9 @@ class Coordinates:
         return all(point[name] == self.base[name] for name in self.base if name not in self.spans)
 
     def within(self, vector: Vector, limit: float) -> Vector | None:
-        """Return the vector, shortened to at most distance `limit` of its point from nominal.
+        """Return the vector, shortened so that its point is at most `limit` from nominal.
 
-        Return None if the options alone are at a larger distance.
+        Return None if the options alone are farther than that.
         """
         room = limit**2 - self.options
         length = distance(self.space, self.point(vector)) ** 2 - self.options

@@ -19,7 +19,7 @@ from tarl_lint.files import write_atomically
 
 @dataclass(frozen=True)
 class Delivered:
-    """The lines for the terminal, why the test fails (or ""), and whether Ctrl-C was pressed."""
+    """The lines for the terminal, why the test fails (or an empty text), and whether Ctrl-C was pressed."""
 
     lines: tuple[str, ...]
     problem: str
@@ -59,7 +59,7 @@ def deliver_repairs(found: Stress, root: Path) -> list[str]:
 
 
 def _documents(found: Stress, root: Path, name: str) -> dict[Path, Callable[[Path], None]]:
-    """Return, for each of the two files (result and page), a function that writes it to a path."""
+    """Return, for the result and for the page, a function that writes it to a path."""
     return {
         root / ".tarl" / "stress" / f"{name}.json": _as_text(json_result.text(found)),
         _page(root, name): _as_text(page.render(found)),
@@ -87,7 +87,7 @@ def _replayed(request: Request, memory: kept.Kept) -> tuple[str, ...]:
 
 
 def _without_salib(found: Stress) -> tuple[str, ...]:
-    """Return the advice to install SALib if the Sobol indices are missing only for lack of this package."""
+    """Return the advice to install SALib, if that is the only reason why there are no Sobol indices."""
     left = found.budget - found.episodes if found.seconds is None else 0
     if found.ended not in ("", "budget") or not affordable(len(found.space.extents), left):
         return ()
@@ -109,7 +109,7 @@ def _written(found: Stress, root: Path, name: str, memory: kept.Kept) -> list[st
         jobs[folder / "report" / f"{name}-stress-map.svg"] = lambda path: write_atomically(
             path, drawn.encode(), parents=True
         )
-    # an incomplete run that found no failure must not delete the failures of earlier runs
+    # a run that ended early without a failure must not delete the failures of earlier runs
     if not found.ended or found.failures:
         jobs[memory.folder] = lambda _: memory.write(found.failures)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}

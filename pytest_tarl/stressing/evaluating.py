@@ -1,4 +1,4 @@
-"""Run episodes under drifts within a budget, and keep their outcomes."""
+"""Run episodes under drifts within a budget, and store their outcomes."""
 
 from __future__ import annotations
 
@@ -26,27 +26,26 @@ from pytest_tarl.stressing.guarantee import (
     refuted,
 )
 
-SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search checks for a decision
-FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
-# number of episodes at each new drift of the search in several directions; few suffice, because a model combines them
+SIZES = (4, 8, 16, 32)  # the search checks for a decision after these numbers of episodes at a drift
+FRESH = (16, 32)  # a test along a ray checks for a decision after these numbers of fresh episodes
+# number of episodes at each new drift of the search in several directions; the model combines them, so a few suffice
 GLANCE = 2
-# the drifts of this search start, in turn, at different seeds among the first TURNS ones
+# successive drifts of this search start at different seeds, among the first TURNS ones
 TURNS = 16
-# numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can show failures
+# a test of a combination checks for a decision after these numbers of fresh episodes; more episodes can show failures
 # nearer to the boundary
 NEAREST = (16, 32, 64)
-# shares of the risk for these checks; the last share is the largest, because the check with the most episodes can show
-# the smallest excess
+# shares of the risk for these checks; the last check gets the most, because it can show the smallest excess
 SPENT = (0.1, 0.2, 0.7)
-SEARCH = "search"  # name of the pool of seeds on which the search runs
-# name of the pool of fresh seeds that all rays share; each chain of combinations has its own pool
+SEARCH = "search"  # name of the pool of seeds for the search
+# name of the pool of fresh seeds for all rays; each chain of combinations has its own pool
 RAYS = "rays"
 
 Progress = Callable[[int, int, str], None]
 
 
 class Count(NamedTuple):
-    """For a drift, the estimated number of failures among a number of episodes."""
+    """The estimated number of failures among some episodes of a drift."""
 
     point: Point
     failed: float
@@ -54,14 +53,14 @@ class Count(NamedTuple):
 
 
 class BudgetSpentError(Exception):
-    """Raised if the remaining budget does not cover the next episodes."""
+    """The remaining budget does not cover the next episodes."""
 
 
 @dataclass
 class Evaluator:
     """Run episodes at points of the space `drift`, and keep their outcomes.
 
-    All points share the seeds of a pool, so their episodes can be compared in pairs. `spent` counts the episodes.
+    All points use the same seeds of a pool, so their episodes can be compared in pairs. `spent` counts the episodes.
     """
 
     rollout: Rollout
@@ -72,9 +71,9 @@ class Evaluator:
     budget: int
     progress: Progress
     spent: int = 0
-    short: bool = False  # whether a result is missing because the budget did not cover it
+    short: bool = False  # whether a result is missing because the budget ran out
     seconds: float | None = None  # time limit in seconds, in addition to the number of episodes
-    begun: float = field(default_factory=lambda: monotonic())  # a lambda, because tests replace `monotonic`
+    begun: float = field(default_factory=lambda: monotonic())  # a lambda because tests replace `monotonic`
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
     _first: dict[tuple[float, ...], int] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
@@ -85,9 +84,9 @@ class Evaluator:
 
     @contextmanager
     def limited(self, share: float) -> Iterator[None]:
-        """Run the block with only this share of the whole budget.
+        """Limit the block to this share of the whole budget.
 
-        If the share is spent, end the block without an error and set `short`.
+        When the share is spent, end the block without an error and set `short`.
         """
         whole, self.budget = self.budget, min(self.budget, round(share * self.budget))
         time, self.seconds = self.seconds, None if self.seconds is None else share * self.seconds
@@ -100,7 +99,7 @@ class Evaluator:
 
     @property
     def left(self) -> int:
-        """Return how many more episodes the budget allows; a time limit counts at the mean speed."""
+        """Return how many more episodes the budget allows; a time limit is converted with the mean time per episode."""
         if self.seconds is None:
             return self.budget - self.spent
         passed = monotonic() - self.begun
@@ -109,17 +108,17 @@ class Evaluator:
     def glance(self, point: Point, turn: int = 0) -> Evidence:
         """Return the evidence at a point from GLANCE episodes; if the point is new, `turn` selects the seeds.
 
-        The drifts take turns with different seeds, so that a few unusual seeds do not distort the results of all
-        drifts. Raise BudgetSpentError.
+        Different drifts start at different seeds, so that a few unusual seeds do not distort the results of all drifts.
+        Raise BudgetSpentError.
         """
         if point != self.space.nominal and not self.searched(point):
             self._first[tuple(point.values())] = turn * GLANCE % TURNS
         return self._evidence(point, GLANCE)
 
     def examine(self, point: Point, most: int) -> Evidence:
-        """Return the evidence at a point from at most `most` episodes; stop once it is decided.
+        """Return the evidence at a point from at most `most` episodes; stop when it is decided.
 
-        Raise BudgetSpentError before episodes that the budget does not cover.
+        Raise BudgetSpentError before episodes that exceed the budget.
         """
         found = self._evidence(point, SIZES[0])
         for size in SIZES[1:]:
@@ -133,7 +132,7 @@ class Evaluator:
         return bool(self._known.get((SEARCH, *point.values())))
 
     def known(self, point: Point) -> Evidence:
-        """Return the evidence at a point from the episodes of the search that already ran there."""
+        """Return the evidence at a point from the search episodes that have already run there."""
         outcomes = self._known[(SEARCH, *point.values())]
         return examined(self.guarantee, outcomes, self._paired(point, len(outcomes)))
 
@@ -149,15 +148,18 @@ class Evaluator:
         strict: bool = False,
         least: float | None = None,
     ) -> bool:
-        """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
+        """Return whether fresh episodes show that the guarantee fails at a point, with error probability `risk`.
 
-        Episodes are paired with the nominal episodes of the same seeds. Several points may share a pool, provided that
-        the outcomes of the pool did not affect the choice of the points. The test checks for a decision after each
-        number of episodes in `sizes`. Each check has its share of `risk`; without `shares`, all checks have the same
-        share. With `part`, only this part of the guarantee is tested, at the whole risk; the choice of the part must
-        not depend on the pool. The test also stops when it has little chance left to show a failure; with `strict`,
-        this happens earlier (see `hopeless`). With `least`, a lower bound of the nominal mean reward, the test compares
-        with this bound and needs no nominal episodes. Raise BudgetSpentError.
+        Episodes are paired with the nominal episodes of the same seeds. Several points may use the same pool, as long
+        as they were chosen without knowing its outcomes.
+
+        - `sizes`: the test checks for a decision after each of these numbers of episodes.
+        - `shares`: the share of `risk` for each check; all equal by default.
+        - `part`: test only this part of the guarantee, at the full risk. It must be chosen independently of the pool.
+        - `strict`: stop even earlier when the test has little chance left to show a failure (see `hopeless`).
+        - `least`: a lower bound on the nominal mean reward. The test compares with it instead of nominal episodes.
+
+        Raise BudgetSpentError.
         """
         if least is not None:
             self._unpaired.add(pool)
@@ -174,7 +176,7 @@ class Evaluator:
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
-        # run the nominal episodes first, because each outcome is paired with a nominal one
+        # nominal episodes run first, because each outcome is paired with one
         nominal = self._paired(point, count)
         return examined(self.guarantee, self.common(point, count), nominal)
 
@@ -184,13 +186,13 @@ class Evaluator:
         return [*range(first, TURNS), *range(first), *range(TURNS, count)][:count]
 
     def _paired(self, point: Point, count: int) -> list[Outcome]:
-        """Return the nominal outcomes with the first `count` seeds of a point. Raise BudgetSpentError."""
+        """Return the nominal outcomes for the first `count` seeds of a point. Raise BudgetSpentError."""
         rows = self.rows(point, count)
         nominal = self._of(SEARCH, self.space.nominal, max(rows) + 1)
         return [nominal[row] for row in rows]
 
     def measured(self, point: Point) -> tuple[float, float]:
-        """Return the margin at a point and its approximate standard deviation, from the episodes of `losses`.
+        """Return the margin at a point and its approximate standard deviation, from the episodes that `losses` uses.
 
         Raise KeyError if there is no such episode.
         """
@@ -201,21 +203,21 @@ class Evaluator:
         return self._measured[key]
 
     def release(self, pool: str) -> None:
-        """Let the model of the search learn from the fresh episodes of a pool that no later test uses."""
+        """Let the model of the search learn from a pool of fresh episodes that no later test uses."""
         if pool not in self._released:
             self._released.append(pool)
 
     def knows(self, point: Point) -> bool:
-        """Return whether `losses` has an episode at a point; it has none if the budget was spent before."""
+        """Return whether `losses` has an episode at a point; it has none if the budget ran out first."""
         return any(self._pairs(pool, point)[0] for pool in (SEARCH, *self._released))
 
     @property
     def fresh_pools(self) -> list[str]:
-        """Return the pools of fresh seeds: the pool of the rays and the released pools."""
+        """Return the pools of fresh seeds: that of the rays, and the released ones."""
         return [RAYS, *self._released]
 
     def losses(self, point: Point) -> tuple[list[float], int]:
-        """Return the losses at a point that the model may learn, and how many episodes failed.
+        """Return the losses at a point that the model may learn from, and the number of failed episodes.
 
         These are the episodes of the search and of the released pools. A loss is the difference from the nominal
         episode with the same seed, in units of the tolerated loss; it is positive if the episode earned less. Raise
@@ -228,7 +230,7 @@ class Evaluator:
         return shares, sum(not one.passed for one in outcomes)
 
     def totals(self, point: Point) -> list[tuple[float, float]]:
-        """Return the rewards of a point's search episodes, each with its seed's nominal reward."""
+        """Return the rewards of the search episodes at a point, each with the nominal reward of the same seed."""
         return [(one.total, usual.total) for one, usual in zip(*self._pairs(SEARCH, point), strict=True)]
 
     @property
@@ -237,7 +239,7 @@ class Evaluator:
         return fmean(one.total for one in self._known.get((SEARCH, *self._usual), []))
 
     def sources(self, point: Point) -> list[tuple[str, int]]:
-        """Return the pool and the number of the seed of each episode of `losses`, in the same order."""
+        """Return the pool and seed number of each episode of `losses`, in the same order."""
         return [
             (pool, row)
             for pool in (SEARCH, *self._released)
@@ -245,7 +247,7 @@ class Evaluator:
         ]
 
     def _learned(self, point: Point) -> tuple[list[Outcome], list[Outcome]]:
-        """Return the outcomes at a point that the model may learn, and their seeds' nominal ones."""
+        """Return the outcomes at a point that the model may learn from, and the nominal ones of the same seeds."""
         pairs = [self._pairs(pool, point) for pool in (SEARCH, *self._released)]
         outcomes, nominal = ([*chain.from_iterable(part)] for part in zip(*pairs, strict=True))
         if not outcomes:
@@ -253,7 +255,7 @@ class Evaluator:
         return outcomes, nominal
 
     def _pairs(self, pool: str, point: Point) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
-        """Return a pool's outcomes at a point and the nominal outcomes with the same seeds; skip other seeds."""
+        """Return a pool's outcomes at a point and the nominal outcomes of the same seeds; skip seeds without both."""
         outcomes = self._known.get((pool, *point.values()))
         if not outcomes:
             return (), ()
@@ -262,7 +264,7 @@ class Evaluator:
         return outcomes[: len(rows)], [nominal[row] for row in rows]
 
     def _nominal(self, pool: str, count: int) -> Sequence[Outcome]:
-        """Return a pool's nominal outcomes; without any, the recorded mean replaces each."""
+        """Return a pool's nominal outcomes; if it has none, use the recorded mean for each."""
         if pool in self._unpaired:
             return [Outcome(True, fmean(self.guarantee.totals))] * count
         return self._known.get((pool, *self._usual), [])
@@ -272,13 +274,13 @@ class Evaluator:
         return tuple(self.space.nominal.values())
 
     def _rows(self, pool: str, point: Point, count: int) -> Sequence[int]:
-        """Return the numbers of a pool's first `count` seeds at a point, in running order."""
+        """Return the first `count` seed numbers of a pool at a point, in the order in which they run."""
         if pool == SEARCH:
             return self.rows(point, count)
         return self._orders.get((pool, *point.values()), range(count))[:count]
 
     def ordered(self, pool: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
-        """Run the seeds `rows` of a fresh pool at a point; return all outcomes there by number.
+        """Run the seeds `rows` of a fresh pool at a point; return all outcomes there by seed number.
 
         Raise BudgetSpentError if the budget does not cover the missing ones.
         """
@@ -290,7 +292,7 @@ class Evaluator:
         return dict(zip(order, known, strict=True))
 
     def count(self, pool: str, count: Count) -> None:
-        """Store how many episodes of a pool fail (an estimate), instead of the drift's earlier one.
+        """Store the estimated number of failures of a pool; it replaces the drift's earlier estimate.
 
         The model learns from the estimate once the pool is released.
         """
@@ -314,9 +316,9 @@ class Evaluator:
         return self._of(RAYS, point, count)
 
     def affords(self, point: Point, count: int, paired: int) -> bool:
-        """Return whether the budget covers `count` fresh episodes at a point and `paired` nominal ones.
+        """Return whether the budget covers `count` fresh and `paired` nominal episodes at a point.
 
-        Set `short` if it does not. Episodes that already ran cost nothing.
+        Set `short` if it does not. Episodes that have already run are free.
         """
         wanted = ((point, count), (self.space.nominal, paired))
         missing = (count - len(self._known.get((RAYS, *at.values()), ())) for at, count in wanted)
@@ -340,8 +342,8 @@ class Evaluator:
     def recalled(self, pool: str, point: Point) -> list[tuple[EpisodePlan, bool]]:
         """Return the plan of each episode that a pool ran at a point, and whether the episode failed.
 
-        An episode fails if it does not pass, or if its reward is lower than that of the nominal episode with the same
-        seed by more than the tolerated loss.
+        An episode fails if it does not pass, or if it loses more than the tolerated reward compared with the nominal
+        episode of the same seed.
         """
         known = self._known.get((pool, *point.values()), [])
         rows = self._rows(pool, point, len(known))

@@ -1,4 +1,4 @@
-"""Search for drifts with low margins by an evolution strategy, CMA-ES from the package `cma`."""
+"""Search for drifts with low margins by CMA-ES, an evolution strategy (package `cma`)."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pytest_tarl.stressing.coordinates import Vector
 def evolve(
     start: Vector, spread: float, draws: np.random.Generator, margin: Callable[[Vector], float | None]
 ) -> None:
-    """Call `margin` with random vectors until it returns None; their normal distribution adapts to low margins.
+    """Call `margin` with random vectors until it returns None; their normal distribution moves to low margins.
 
-    `spread` is the initial standard deviation. The random numbers come from `draws`, because `cma` would otherwise seed
+    `spread` is the initial standard deviation. `draws` provides the random numbers. Without it, `cma` would seed
     numpy's global generator, which nodes may use.
     """
     with warnings.catch_warnings():

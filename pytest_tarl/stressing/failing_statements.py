@@ -1,7 +1,7 @@
-"""Find the statements that run in failing episodes and in no other episode.
+"""Find the statements that run only in failing episodes.
 
-Episodes of the search are repeated to record their statements. The repetitions have the same drifts and seeds, so they
-are identical. Repetitions do not count towards the budget.
+Episodes of the search are repeated with the same drifts and seeds, this time with their statements recorded. The
+repetitions do not count towards the budget.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ _DECLARING = (  # statements that only declare something, or do nothing
 
 @dataclass(frozen=True)
 class Source:
-    """The statements of the nodes' files, numbered across all files.
+    """The statements of the nodes' files, numbered across files.
 
-    `rollout` returns a rollout that records the numbers of the statements at given positions.
+    `rollout` returns a rollout that records which of the statements at the given positions run.
     """
 
-    places: tuple[tuple[str, int, str], ...]  # (file as shown to users, line, text), by statement number
+    places: tuple[tuple[str, int, str], ...]  # (file as shown to users, line, text) of each statement
     positions: Mapping[Path, Positions]
     rollout: Callable[[Mapping[Path, Positions]], Rollout]
 
@@ -94,7 +94,7 @@ def only_in_failures(
     failing: Sequence[Collection[int]],
     others: Iterable[Collection[int]],
 ) -> tuple[Executed, ...]:
-    """Return the statements that ran in failing episodes only; those that ran in most of them come first."""
+    """Return the statements that ran only in failing episodes, most frequent first."""
     elsewhere = {number for one in others for number in one}
     counts = Counter(number for one in failing for number in one if number not in elsewhere)
     order = sorted(counts, key=lambda number: (-counts[number], number))
@@ -106,8 +106,8 @@ def chosen(
 ) -> tuple[list[EpisodePlan], list[EpisodePlan]]:
     """Return episodes of confirmed failures, and similar episodes that do not fail.
 
-    Both lists alternate between drifts. The episodes that do not fail come first from failing drifts, then from the
-    nominal drift, and then from drifts at which the guarantee holds.
+    Both lists alternate between drifts. The episodes that do not fail come from failing drifts first, then from the
+    nominal drift, then from drifts at which the guarantee holds.
     """
     fails: list[list[EpisodePlan]] = []
     passes: list[list[EpisodePlan]] = []
@@ -136,6 +136,6 @@ def _in_turn(lists: Sequence[Sequence[EpisodePlan]]) -> Iterator[EpisodePlan]:
 
 
 def _run(rollout: Rollout, plans: Sequence[EpisodePlan]) -> list[set[int]]:
-    """Return for each episode the numbers of the statements that it runs."""
+    """Return, for each episode, the numbers of the statements that it runs."""
     recording = (replace(plan, record=True) for plan in plans)
     return [set(pending.result().trace.site.tolist()) for pending in in_order(rollout, recording)]

@@ -1,7 +1,7 @@
-"""Fit the fields of the search's model, and choose their hyperparameters by evidence.
+"""Fit the fields of the search's model, and choose their hyperparameters by the evidence (marginal likelihood).
 
-The hyperparameters are the scale factor of each direction, the prior variance of the logit, and the effect of a seed.
-Choosing them takes several fits. They are therefore kept until the number of drifts has grown clearly.
+The hyperparameters are a scale factor for each direction, the prior variance of the logit, and the effect of a seed.
+Choosing them takes several fits, so they are kept until there are clearly more drifts.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, scaled_covariances
 
-# possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
+# candidates for the prior variance of the logit, relative to that of the loss
 SCALES = (9.0, 36.0, 144.0)
-# possible variances of a seed's effect on the logit, an effect common to all drifts; 0 is tried as well
+# candidates for the variance of a seed's effect on the logit, which is common to all drifts; 0 is also tried
 LUCK = (1.0, 4.0)
-IRRELEVANT = 0.3  # scale factor for the coordinate of a direction with little influence
-GROWN = 1.2  # hyperparameters are chosen again if the number of drifts grew by this factor
+IRRELEVANT = 0.3  # scale factor of a direction with little influence
+GROWN = 1.2  # hyperparameters are chosen again after the number of drifts has grown by this factor
 
 Field = TypeVar("Field", LossField, RateField)
 
@@ -29,8 +29,9 @@ Field = TypeVar("Field", LossField, RateField)
 class Fit(Generic[Field]):
     """A fitted field.
 
-    `units` holds the scale factors of the directions. `luck` is the variance of the effect of a seed. `chosen` is the
-    number of drifts from which the hyperparameters were chosen.
+    - `units`: the scale factor of each direction
+    - `luck`: the variance of a seed's effect
+    - `chosen`: the number of drifts when the hyperparameters were chosen
     """
 
     field: Field
@@ -45,10 +46,10 @@ class Fit(Generic[Field]):
 
 @dataclass(frozen=True)
 class Counts:
-    """Failed episodes at vectors; arrays of shape (drifts,).
+    """Numbers of failed episodes at vectors; arrays of shape (drifts,).
 
-    `usual` is the logit of the failure rate at nominal. `shared` holds the covariances that exist because drifts ran on
-    the same seeds; they are computed for a seed effect of variance 1.
+    `usual` is the logit of the failure rate at nominal. `shared` holds the covariances of drifts that ran on the same
+    seeds, computed for a seed effect of variance 1.
     """
 
     vectors: Vector
@@ -58,12 +59,12 @@ class Counts:
     shared: Matrix
 
     def field(self, prior: Matrix, scale: float, start: Vector | None = None, luck: float = 0.0) -> RateField:
-        """Fit a field with these hyperparameters, starting from the logits `start`."""
+        """Fit a field with these hyperparameters, starting from the logits in `start`."""
         shared = luck * self.shared if luck > 0.0 else None
         return RateField(prior, scale, self.failed, self.episodes, self.usual, start, shared)
 
     def logits(self, known: Mapping[tuple[float, ...], float]) -> Vector:
-        """Return the known logits at vectors that have one, and the usual logit at new vectors."""
+        """Return the logits at vectors: the known one, or the usual one for a new vector."""
         return np.array([known.get(tuple(vector), self.usual) for vector in self.vectors.tolist()])
 
 
@@ -72,7 +73,7 @@ def loss_fit(
 ) -> Fit[LossField]:
     """Fit mean losses of shape (drifts,); `errors` are the covariances of their errors.
 
-    `before` is the fit to fewer drifts, if any.
+    `before` is the fit to fewer drifts, if there was one.
     """
     if before is not None and before.lasts(len(vectors)):
         scaled = vectors * before.units
@@ -107,7 +108,7 @@ def rate_fit(
 def relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field, Vector]:
     """Choose a scale factor for each direction; return the fitted field and the factors.
 
-    The factor of a direction is IRRELEVANT if that increases the evidence, and 1 otherwise.
+    The factor of a direction is IRRELEVANT if this increases the evidence, and 1 otherwise.
     """
     units = np.ones(vectors.shape[1])
     prior = scaled_covariances(vectors)

@@ -11,23 +11,25 @@ from pytest_tarl.spaces import Point, Space, Span
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
-CONFIDENCE = 0.9  # probability that a boundary lies in the interval that is reported for it
-# maximum probability that the guarantee still holds at the far end of the interval
+CONFIDENCE = 0.9  # confidence of the interval reported for a boundary
+# maximum probability that the guarantee still holds at the interval's far end
 FAR_RISK = (1.0 - CONFIDENCE) / 6
-NEARER = 0.98  # maximum ratio of two distances at which the first counts as nearer
-# a failure that contains a nearer failure is reported only if its distance is at least this multiple of the nearer
-# one's
+NEARER = 0.98  # a distance counts as nearer if it is at most this share of the other distance
+# a failure that contains a nearer one is reported only if it is at least this many times as far away
 APART = 1.03
-# maximum probability that the guarantee already fails at the near end of the interval
+# maximum probability that the guarantee already fails at the interval's near end
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 
 
 @dataclass
 class Curve:
-    """The evidence along a ray, by the place t; the search adds to it.
+    """The evidence along a ray, indexed by the position t; the search adds to it.
 
-    `confirmed` is the nearest t at which fresh seeds showed a failure, and `farther` holds every other such t.
-    `rejected` holds each t at which fresh seeds showed no failure.
+    Each of the following was decided on fresh seeds:
+
+    - `confirmed`: the nearest t that failed
+    - `farther`: every other t that failed
+    - `rejected`: each t at which no failure was shown
     """
 
     ray: Ray
@@ -39,19 +41,19 @@ class Curve:
     swept: bool = False  # whether the coarse sweep is complete
 
     def confirm(self, t: float) -> None:
-        """Keep t, at which fresh seeds showed a failure."""
+        """Store t, at which fresh seeds showed a failure."""
         every = {t, *self.farther} | ({self.confirmed} if self.confirmed is not None else set())
         self.confirmed, *others = sorted(every)
         self.farther = tuple(others)
 
     @property
     def failing(self) -> list[float]:
-        """Return each t at which the evidence so far shows a failure, ascending."""
+        """Return each t that fails according to the evidence so far, in ascending order."""
         return sorted(t for t, one in self.evidence.items() if one.failing)
 
     @property
     def bracket(self) -> tuple[float, float] | None:
-        """Return the nearest failing t and the measured t before it; None if no t fails."""
+        """Return the nearest failing t and the measured t before it, or None if no t fails."""
         if not self.failing:
             return None
         far = self.failing[0]
@@ -71,17 +73,17 @@ class Curve:
 
     @property
     def monotone(self) -> bool:
-        """Return whether all measured points beyond the nearest failing one fail, too."""
+        """Return whether all measured points beyond the nearest failing one also fail."""
         nearest = self.failing[0] if self.failing else 1.0
         return not any(t > nearest and not one.failing for t, one in self.evidence.items())
 
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """A ray's boundary: the guarantee holds up to `near`, fails at `far`; `at` is the estimate.
+    """The boundary on a ray: the guarantee holds up to `near` and fails at `far`; `at` is the estimate.
 
     If the margin never rises with the drift, the boundary lies between `near` and `far` with confidence CONFIDENCE.
-    `near` is None if no value except the nominal one was shown to hold.
+    `near` is None if only the nominal value is known to hold.
     """
 
     at: float
@@ -92,19 +94,19 @@ class Boundary:
 
 @dataclass(frozen=True)
 class Failure:
-    """A drift under which the guarantee fails, confirmed on fresh seeds."""
+    """A drift that was confirmed on fresh seeds to break the guarantee."""
 
     point: Point
     distance: float
-    names: tuple[str, ...]  # directions whose value is not the nominal one
+    names: tuple[str, ...]  # directions whose value is not nominal
 
 
 @dataclass(frozen=True)
 class MarginMap:
-    """The predicted margins over two ranges, and their standard deviations.
+    """The predicted margins over two ranges, with their standard deviations.
 
-    Row i belongs to the i-th cell of the second range, ascending. The cells divide both ranges evenly. Each value is
-    predicted for the middle of its cell.
+    The cells divide both ranges evenly, and each value is predicted for the middle of its cell. Row i belongs to the
+    i-th cell of the second range, in ascending order.
     """
 
     names: tuple[str, str]
@@ -115,7 +117,7 @@ class MarginMap:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """A direction's Sobol indices: shares of the margin's variance over the space.
+    """The Sobol indices of a direction: its shares of the margin's variance over the space.
 
     `first` is the share of the direction alone; `total` also includes its combinations with other directions. The error
     of a share is half the width of its confidence interval.
@@ -130,7 +132,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Sobol:
-    """The Sobol indices of all directions, and the number of episodes behind them.
+    """The Sobol indices of all directions, and the number of episodes used.
 
     `hopeless` is true if every episode had the lowest possible margin. The indices then have no meaning.
     """
@@ -152,7 +154,7 @@ class Executed:
 
 @dataclass(frozen=True)
 class Statements:
-    """The statements that ran only in failing episodes, and the numbers of failing and other episodes compared."""
+    """The statements that ran only in failing episodes, and how many failing and other episodes were compared."""
 
     failing: int
     others: int
@@ -161,10 +163,10 @@ class Statements:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """How a repair moves a boundary, in words, and as values that hold and that fail.
+    """How a repair moves a boundary: in words, and as the values that hold and that fail.
 
-    A value is None if neither was shown. For a single direction, values are numbers of its range. For a combination,
-    they are distances from nominal.
+    A value is None if neither was shown. Values of a single direction are numbers from its range. Values of a
+    combination are distances from nominal.
     """
 
     name: str
@@ -179,7 +181,7 @@ class Moved:
 
 @dataclass(frozen=True, slots=True)
 class Draws:
-    """Episodes at random points of the whole space, without and with a repair."""
+    """Episodes at random points of the whole space, with and without a repair."""
 
     episodes: int
     passed_before: int
@@ -191,12 +193,12 @@ class Draws:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A search for a repair in a region of drifts, and the accepted repair's effects."""
+    """A search for a repair in a region of drifts, and the effects of the accepted repair."""
 
     region: str
     told: str  # description of the repair, or reason why there is none
     accepted: bool = False
-    patch: str | None = None  # None if there is no repair, or if it is withheld
+    patch: str | None = None  # None if there is no repair or it is withheld
     withheld: str = ""  # why the repair is withheld, or empty
     moved: tuple[Moved, ...] = ()
     draws: Draws | None = None
@@ -215,22 +217,22 @@ class Stress:
     episodes: int
     curves: tuple[Curve, ...]
     combinations: tuple[Failure, ...] = ()
-    expected: tuple[Failure, ...] = ()  # drifts that fail according to the model but are not confirmed
-    seconds: float | None = None  # time limit in seconds, if the budget is a time
+    expected: tuple[Failure, ...] = ()  # drifts that the model expects to fail, but that are not confirmed
+    seconds: float | None = None  # time limit in seconds, if the budget is a time limit
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # number of combinations tried
     margin_map: MarginMap | None = None
-    statements: Statements | None = None  # None if no failure is confirmed
-    sobol: Sobol | None = None  # None if the episodes did not suffice, or if SALib is not installed
-    repairs: tuple[Attempt, ...] | None = None  # None if no repair was asked for
-    ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
+    statements: Statements | None = None  # None if no failure was confirmed
+    sobol: Sobol | None = None  # None if there were too few episodes or SALib is not installed
+    repairs: tuple[Attempt, ...] | None = None  # None if no repair was requested
+    ended: str = ""  # why the search ended early ("budget", "interrupted" or "nominal"), or empty
 
     @property
     def nearer(self) -> Failure | None:
-        """Return the nearest unconfirmed drift that fails according to the model.
+        """Return the nearest unconfirmed drift that the model expects to fail.
 
-        Return None if a confirmed failure is about as near or nearer. Skip drifts of a single direction with a
-        boundary, which says more about that direction.
+        Return None if a confirmed failure is about as near, or nearer. Skip drifts of a single direction that has a
+        boundary, because the boundary says more about that direction.
         """
         limit = min((one.distance for one in self.failures), default=inf)
         bounded = [one.ray for one in self.curves if one.boundary is not None]
@@ -255,7 +257,7 @@ class Stress:
 
 
 def place_on(ray: Ray, one: Failure) -> float | None:
-    """Return where a failure lies on the ray of a single direction, or None if it lies elsewhere."""
+    """Return the position of a failure on the ray of a single direction, or None if it is not on the ray."""
     if one.names != ray.names or len(ray.names) != 1:
         return None
     (name,) = ray.names
@@ -286,9 +288,9 @@ def confirmed(curves: Sequence[Curve]) -> list[Failure]:
 
 
 def farther(curves: Sequence[Curve]) -> list[Failure]:
-    """Return the confirmed failing drifts beyond the nearest one of each ray.
+    """Return the confirmed failing drifts beyond the nearest one on each ray.
 
-    Each is at least APART times as far from nominal as the one before it.
+    Each is at least APART times as far from nominal as the previous one.
     """
     found = []
     for one in curves:

@@ -1,4 +1,4 @@
-"""Fit the model of the search to the episodes of an evaluator."""
+"""Fit the model of the search to an evaluator's episodes."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ def fitted(
     shown: Callable[[float], Shown],
     before: Prediction | None = None,
 ) -> Prediction:
-    """Return a model of the drifts that `coordinates` cover, fitted to those drifts in `known` that they cover.
+    """Return a model fitted to those drifts in `known` that `coordinates` cover.
 
-    `shown` receives the standard deviation of a loss at the boundary, and returns what fresh episodes can show. If the
-    drifts have options that are not nominal, the model assumes the measured loss under these options alone. `before` is
-    the previous model of the same search, if there is one.
+    `shown` gets the standard deviation of a loss at the boundary, and returns what fresh episodes can show. If the
+    drifts have options that are not nominal, the model starts from the loss measured under these options alone.
+    `before` is the previous model of the same search, if there is one.
     """
     unique = {tuple(point.values()): point for point in known if coordinates.covers(point)}
     points = list(unique.values())

@@ -1,7 +1,7 @@
-"""Choose values of a ray at which fresh episodes can show that the guarantee holds or fails.
+"""Choose values on a ray at which fresh episodes can show that the guarantee holds or fails.
 
-The choice uses an approximate model of the episodes of a search. A poor choice makes the resulting interval wider, but
-not wrong.
+The choice uses an approximate model of the search's episodes. A poor choice makes the reported interval wider, but not
+wrong.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ import numpy as np
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
-HOPE = 0.8  # a value is chosen only if a test there is expected to succeed with at least this probability
-# If a loss lies this number of standard errors below the tolerated loss, a bound with 4 % risk shows in 4 of 5 cases
-# that the loss is tolerated.
+HOPE = 0.8  # a value is chosen only if its test is expected to succeed with at least this probability
+# standard errors by which a loss must be below the tolerated loss, so that a bound with 4 % risk confirms this in 4 of
+# 5 cases
 HOLDING = 3.0
-# If a loss lies this number of standard errors above the tolerated loss, a bound with 0.4 % risk shows in 4 of 5
-# cases that the loss exceeds it.
+# standard errors by which a loss must exceed the tolerated loss, so that a bound with 0.4 % risk confirms this in 4 of
+# 5 cases
 FAILING = 4.0
-# places t on a ray among which the next place to test is chosen
+# candidate positions on a ray for the next test
 PLACES = tuple(step / 100 for step in range(1, 101))
-CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail
-SCALES = np.geomspace(0.002, 0.3, 16)  # possible scales of the logistic distribution, in units of t
+CENTRES = np.linspace(0.0, 1.25, 251)  # candidate values of t at which half of the episodes fail
+SCALES = np.geomspace(0.002, 0.3, 16)  # candidate scales of the logistic distribution, in units of t
 
 
 @dataclass(frozen=True)
@@ -36,17 +36,17 @@ class Model:
 
     Each episode has its own threshold: it fails if t exceeds the threshold. Thresholds follow a logistic distribution,
     with a uniform prior over CENTRES and SCALES. The mean loss of reward is interpolated linearly between the measured
-    values of t. The standard deviation of the loss at t is the one measured at the next larger t.
+    values of t. Its standard deviation at t is the one measured at the next larger t.
     """
 
     evidence: Mapping[float, Evidence]
     tolerance: float
 
     def holding(self, episodes: int, paired: int) -> float:
-        """Return the farthest t at which a test is expected to show that the guarantee holds, or 0.
+        """Return the farthest t whose test is expected to show that the guarantee holds, or 0.
 
-        In such a test, all `episodes` pass, and the bound of the loss from `paired` episodes is at most the tolerated
-        loss.
+        The test shows this if all `episodes` pass, and the bound on the loss from `paired` episodes is at most the
+        tolerated loss.
         """
 
         def beyond(t: float) -> bool:
@@ -58,9 +58,10 @@ class Model:
         return PLACES[at - 1] if at else 0.0
 
     def failing(self, episodes: int, passed: int) -> float | None:
-        """Return the nearest t at which a test is expected to show a failure, or None.
+        """Return the nearest t whose test is expected to show a failure, or None.
 
-        In such a test, at most `passed` of `episodes` pass, or the loss is clearly larger than tolerated.
+        The test shows a failure if at most `passed` of `episodes` pass, or if the loss is clearly larger than
+        tolerated.
         """
         few = bisect_left(PLACES, HOPE, key=lambda t: 1.0 - self._passing(t, episodes, passed + 1))
         lost = (t for t in PLACES[:few] if self._loss(t, -FAILING, episodes) > self.tolerance)
@@ -77,9 +78,9 @@ class Model:
         return float((self._weights * chance).sum())
 
     def _loss(self, t: float, errors: float, episodes: int) -> float:
-        """Return the expected loss at t plus `errors` standard errors.
+        """Return the expected loss at t plus `errors` times its standard error.
 
-        The standard error includes that of the search's episodes and that of `episodes` fresh episodes.
+        The standard error includes the uncertainty of the search's episodes and of `episodes` fresh ones.
         """
         ts = sorted(self.evidence)
         every = [self.evidence[one] for one in ts]
@@ -92,7 +93,7 @@ class Model:
 
     @cached_property
     def _weights(self) -> Floats:
-        """Return the posterior probability of each centre and scale, shape (centres, scales)."""
+        """Return the posterior probability of each combination of centre and scale, shape (centres, scales)."""
         ts = np.array(sorted(self.evidence))
         passed = np.array([self.evidence[t].passed for t in ts])
         failed = np.array([self.evidence[t].episodes for t in ts]) - passed

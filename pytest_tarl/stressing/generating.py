@@ -1,4 +1,4 @@
-"""Generate drifts with Hypothesis, whose `target` steers them towards low margins."""
+"""Generate drifts with Hypothesis, steered towards low margins by `target`."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ BITS = 4  # number of bits drawn for the size of a change
 
 
 def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], float | None]) -> None:
-    """Call `margin` with up to `tries` generated drifts until it returns None. Re-raise what `margin` raises.
+    """Call `margin` with up to `tries` generated drifts, until it returns None. Re-raise what `margin` raises.
 
-    Only booleans are drawn. For numbers, Hypothesis mixes in constants from imported modules, and these differ between
-    worker processes. The database of Hypothesis is off because it also makes runs differ.
+    Only booleans are drawn: for numbers, Hypothesis mixes in constants from imported modules, and these differ between
+    worker processes. Its database is disabled because it also makes runs differ.
     """
     import hypothesis
     from hypothesis import strategies as st
@@ -36,7 +36,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
         nonlocal ended, raised
         try:
             found = None if ended else margin(_point(space, drawn))
-        # the error must not reach Hypothesis, which would run the drift again
+        # Hypothesis would run the drift again if it saw the error
         except Exception as problem:
             found, raised = None, problem
         if found is None:
@@ -50,7 +50,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
 
 
 def _point(space: Space, drawn: tuple[tuple[bool, ...], ...]) -> Point:
-    """Return the point for drawn bits: for each direction, whether it changes, to which side, and how far."""
+    """Return the point for drawn bits, which give for each direction whether it changes, to which side, and how far."""
     found: dict[str, float] = {}
     for (name, extent), (part, side, *bits) in zip(space.extents.items(), drawn, strict=True):
         number = sum(bit << place for place, bit in enumerate(bits))

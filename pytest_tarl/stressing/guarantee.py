@@ -21,16 +21,16 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 from pytest_tarl.rollout import EpisodeRun
 
-LOWEST = -1.5  # lower limit of margins, since a margin below it says little about the place of the boundary
-# minimum number of episodes for the result "holds"; if 1 in 12 episodes fails, 8 episodes still all pass half of the
-# time
+LOWEST = -1.5  # lower limit of margins: a lower margin says little about where the boundary is
+# minimum number of episodes for the result "holds"; if 1 in 12 episodes fails, 8 episodes still pass in half of all
+# cases
 LEAST = 8
 HOPEFUL = 0.84  # one-sided confidence of the bound "mean plus one standard error"
-# approximate error probability of each decision of the search; only fresh seeds give a guarantee
+# approximate error probability of each decision of the search; only tests on fresh seeds are exact
 SEARCH_RISK = 0.05
 
 Answer = Literal["fails", "holds", "open"]
-Part = Literal["rate", "loss", "both"]  # the part of the guarantee that a test examines
+Part = Literal["rate", "loss", "both"]  # the part of the guarantee that is tested
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Outcome:
 class Evidence:
     """What episodes under a drift show about the guarantee.
 
-    `margin` is 1 for the performance of the recording, and 0 if the guarantee is just met.
+    `margin` is 1 for the recorded performance, and 0 where the guarantee is only just met.
     """
 
     result: Answer
@@ -57,7 +57,7 @@ class Evidence:
 
     @property
     def failing(self) -> bool:
-        """Return whether the guarantee appears to fail, according to the evidence so far."""
+        """Return whether the guarantee seems to fail, according to the evidence so far."""
         return self.result == "fails" or (self.result == "open" and self.margin < 0.0)
 
 
@@ -71,13 +71,13 @@ class Guarantee:
     rate: float
     tolerance: float
     totals: tuple[float, ...]
-    share: float  # share of the recorded episodes that passed
+    share: float  # share of recorded episodes that passed
     declared: Range | None = None
 
     def margin(self, passed: float, loss: float) -> float:
         """Return how far a pass rate and a mean loss are from breaking the guarantee.
 
-        1 is the performance of the recording, 0 just meets the guarantee.
+        The margin is 1 for the recorded performance, and 0 where the guarantee is only just met.
         """
         room = max(self.share - self.rate, 1e-9)
         of_rate = (passed - self.rate) / room
@@ -88,8 +88,8 @@ class Guarantee:
 def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
     """Return the guarantee of a recording.
 
-    The guaranteed success rate is the lower confidence bound from the recording, but at most `min_success`. The
-    tolerated loss comes from the tolerance of the marker.
+    The guaranteed success rate is the recording's lower confidence bound, but at most `min_success`. The tolerated loss
+    follows from the marker's tolerance.
     """
     sample = fixture.sample
     outcomes = [
@@ -99,7 +99,7 @@ def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
 
 
 def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Designation) -> Guarantee:
-    """Return the guarantee of recorded outcomes for a tolerated loss."""
+    """Return the guarantee that follows from recorded outcomes and a tolerated loss."""
     passed, episodes = sum(one.passed for one in outcomes), len(outcomes)
     return Guarantee(
         rate=min(designation.min_success, rate(passed, episodes, CONFIDENCE).low),
@@ -111,7 +111,7 @@ def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Desig
 
 
 def outcome(run: EpisodeRun) -> Outcome:
-    """Return the outcome of an episode; an episode with a node that never yields has failed.
+    """Return the outcome of an episode; it has failed if a node never yields.
 
     Raise RecordingError if the test itself is broken.
     """
@@ -124,9 +124,9 @@ def outcome(run: EpisodeRun) -> Outcome:
 
 
 def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> Evidence:
-    """Return the evidence from outcomes that are paired by seed with nominal ones.
+    """Return the evidence from outcomes that are paired with nominal ones by seed.
 
-    The evidence is approximate, which suffices to guide the search.
+    The evidence is approximate, which is enough to guide the search.
     """
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
@@ -140,7 +140,7 @@ def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Ou
 
 
 def margin_of_one(given: Guarantee, outcome: Outcome, nominal: Outcome) -> float:
-    """Return the margin of a single episode, paired by seed with a nominal episode."""
+    """Return the margin of a single episode, paired with the nominal episode of the same seed."""
     return given.margin(float(outcome.passed), nominal.total - outcome.total)
 
 
@@ -150,8 +150,8 @@ def margin_of(
     """Return the margin of outcomes, cut off at LOWEST, and its approximate standard deviation.
 
     If some episodes failed, the deviation is half the width of the margin's 80 % interval. If all passed, it is the
-    standard error of the mean loss. The losses of a few episodes may agree by chance. To compute the error, two losses
-    are therefore added that differ from the mean by a third of the tolerance.
+    standard error of the mean loss. The losses of a few episodes may be equal by chance, so the error is computed with
+    two more losses, which differ from the mean by a third of the tolerance.
     """
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
@@ -173,11 +173,11 @@ def refuted(
     risk: float,
     part: Part = "both",
 ) -> bool:
-    """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails.
+    """Return whether fresh episodes show that the guarantee fails, with error probability `risk`.
 
-    The guarantee fails if too few episodes pass or too much reward is lost; `part` limits the test to one of them.
-    Losses are paired by seed with nominal episodes. The bound of the loss is exact if the marker declares total_range;
-    otherwise it is Student's approximation.
+    The guarantee fails if too few episodes pass or too much reward is lost; `part` restricts the test to one of the
+    two. Losses are paired with nominal episodes by seed. The bound on the loss is exact if the marker declares
+    total_range; otherwise it is Student's approximation.
     """
     share = risk / 2 if part == "both" else risk
     if part != "loss" and _too_few_pass(given, outcomes, share):
@@ -188,15 +188,15 @@ def refuted(
 
 
 def recorded_mean(given: Guarantee, risk: float) -> float:
-    """Return a lower bound of the nominal mean reward from the recorded rewards, with error probability `risk`.
+    """Return a lower bound on the nominal mean reward from the recorded rewards, with error probability `risk`.
 
-    The bound is exact if the marker declares total_range; otherwise, it is Student's.
+    The bound is exact if the marker declares total_range; otherwise it is Student's.
     """
     return mean_of(given.totals, 1.0 - risk, given.declared).low
 
 
 def most_passed(given: Guarantee, count: int, risk: float, part: Part = "both") -> int:
-    """Return the largest number of passes in `count` episodes that refutes the guarantee, or -1 if none does."""
+    """Return the largest number of passes in `count` episodes that refutes the guarantee, or -1."""
     return _most_passed(given.rate, count, risk / 2 if part == "both" else risk)
 
 
@@ -216,11 +216,11 @@ def hopeless(
     *,
     strict: bool = False,
 ) -> bool:
-    """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
+    """Return whether, after the first episodes, `most` episodes are unlikely to refute the guarantee.
 
-    First, about one standard error is added to the loss and to the number of failures. If the guarantee still holds
-    then, a refutation is unlikely. With `strict`, it is also unlikely if further episodes with this increased loss
-    would not refute the guarantee. `part` has the same meaning as in `refuted`.
+    About one standard error is added to the loss and to the number of failures. If the guarantee still holds, a
+    refutation is unlikely. With `strict`, a refutation also counts as unlikely if the remaining episodes could not
+    refute the guarantee with this increased loss. `part` is as in `refuted`.
     """
     if part != "loss":
         count, failed = len(outcomes), sum(not one.passed for one in outcomes)
@@ -244,7 +244,7 @@ def hopeful(failed: float, count: int) -> float:
 
 
 def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether fresh episodes show, with error probability `risk`, at least the guaranteed success rate."""
+    """Return whether fresh episodes show the guaranteed success rate, with error probability `risk`."""
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     return rate(passed, count, 1.0 - risk).low >= given.rate
 
@@ -252,15 +252,15 @@ def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> b
 def little_lost(
     given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float
 ) -> bool:
-    """Return whether fresh episodes show, with error probability `risk`, that the loss is tolerated.
+    """Return whether fresh episodes show that the loss is tolerated, with error probability `risk`.
 
-    The bound of the loss is computed as in `refuted`.
+    The bound on the loss is computed as in `refuted`.
     """
     return mean_of(_losses(outcomes, nominal), 1.0 - risk, _differences(given)).high <= given.tolerance
 
 
 def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether episodes refute the guarantee relative to the recorded rewards, with error probability `risk`."""
+    """Return whether episodes break the guarantee compared with the recorded rewards, with error probability `risk`."""
     if _too_few_pass(given, outcomes, risk / 2):
         return True
     totals = [one.total for one in outcomes]
@@ -268,7 +268,7 @@ def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) 
 
 
 def _too_few_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether the upper Clopper-Pearson bound of the success rate, at `risk`, is below the guarantee."""
+    """Return whether the success rate's upper Clopper-Pearson bound, at `risk`, is below the guarantee."""
     passed = sum(one.passed for one in outcomes)
     return rate(passed, len(outcomes), 1.0 - risk).high < given.rate
 

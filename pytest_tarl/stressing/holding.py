@@ -1,9 +1,9 @@
-"""Show on fresh seeds how far the guarantee holds: the near end of a boundary's interval.
+"""Show on fresh seeds how far the guarantee holds: the near end of the interval around a boundary.
 
 A search runs only a few episodes at each drift and can miss rare failures: if 1 in 20 episodes fails, 8 episodes all
-pass two times in three. Therefore the last value at which a search saw no failure is often too far from nominal. This
-module chooses two values from the search's episodes and tests them on fresh seeds. The risk is divided among all tests.
-If the margin never rises with the drift, the boundary lies beyond each value at which the guarantee holds.
+pass two times in three. The last value without a failure is therefore often beyond the boundary. This module chooses
+two values from the search's episodes and tests them on fresh seeds. All tests share the risk. If the margin never rises
+with the drift, the boundary lies beyond each value that holds.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from pytest_tarl.stressing.fresh_values import Model
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 
-# shares of the risk for the first and the second value, and for the two tests at each value
+# shares of the risk for the first and second value, and for the two tests of each value
 SHARES = (0.85, 0.15)
-SECOND = 0.5  # the second tested value, as a share of the first
-BATCH = 8  # a test checks after each batch of this many episodes whether it can still succeed
-PAIRED = (16, 32)  # numbers of episodes from which the loss is bounded if the marker declares no total_range
+SECOND = 0.5  # the second value to test, as a share of the first
+BATCH = 8  # number of episodes after which a test checks whether it can still succeed
+PAIRED = (16, 32)  # numbers of episodes for the bound on the loss, if the marker declares no total_range
 
 
 def hold(curve: Curve, evaluator: Evaluator) -> None:
-    """Set `curve.held` to the farthest chosen value at which fresh seeds show that the guarantee holds.
+    """Set `curve.held` to the farthest chosen value that holds on fresh seeds.
 
-    The probability of a wrong value is at most NEAR_RISK. Values whose test the budget does not cover are skipped.
-    Raise BudgetSpentError if the time limit ends a test.
+    The value is wrong with at most the probability NEAR_RISK. Values whose test exceeds the budget are skipped. Raise
+    BudgetSpentError if the time limit ends a test.
     """
     values, paired = _values(curve, evaluator)
     for t, share in zip(values, SHARES, strict=True):
@@ -38,10 +38,10 @@ def hold(curve: Curve, evaluator: Evaluator) -> None:
 
 
 def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) -> bool:
-    """Return whether fresh seeds show, with error probability `risk`, that the guarantee holds at place t.
+    """Return whether fresh seeds show that the guarantee holds at position t, with error probability `risk`.
 
-    The first test allows no failed episode. If one episode fails, a second, longer test follows, which allows one
-    failure. The loss is bounded from `paired` episodes, or from all episodes if the marker declares total_range.
+    The first test allows no failed episode. If one episode fails, a longer second test follows, which allows one
+    failure. The bound on the loss uses `paired` episodes, or all of them if the marker declares total_range.
     """
     given, point, nominal = evaluator.guarantee, ray.point(t), evaluator.space.nominal
     for allowed, share in enumerate(SHARES):
@@ -63,17 +63,18 @@ def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) ->
 
 
 def least(share: float, failed: int, risk: float) -> int:
-    """Return the number of episodes that shows a success rate of `share` if `failed` fail."""
-    # upper limit of the search: of `failed` + 1 groups of episodes, at least one group has no failure
+    """Return how many episodes are needed to show a success rate of `share` if `failed` of them fail."""
+    # upper limit of the search: among `failed` + 1 groups of episodes, at least one has no failure
     most = (failed + 1) * episodes_for_quantile(1.0 - share, 1.0 - risk / (failed + 1))
     sizes = range(LEAST, max(most, LEAST) + 1)
     return sizes[bisect_left(sizes, True, key=lambda n: rate(n - failed, n, 1.0 - risk).low >= share)]
 
 
 def _values(curve: Curve, evaluator: Evaluator) -> tuple[tuple[float, float], int]:
-    """Return the two values of t to test, and the number of episodes that bounds the loss.
+    """Return the two values of t to test, and the number of episodes for the bound on the loss.
 
-    The values depend only on the search's episodes, so the fresh seeds stay independent. A value of 0 is not tested.
+    The values are chosen only by the search's episodes, so the tests on fresh seeds stay independent. A value of 0 is
+    not tested.
     """
     if not curve.ray.continuous:
         return (1.0, 0.0), PAIRED[0]

@@ -1,4 +1,4 @@
-"""The result of a stress test for other tools: a versioned JSON document, specified by `stress.schema.json`."""
+"""Write the result of a stress test for other tools: a versioned JSON document, specified by `stress.schema.json`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.spaces import Choice, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-# Format 1: first version. 2: confidence of the boundary, values shown to hold. 3: Sobol indices, statements, repairs,
-# seconds. 4: drifts that are expected to fail.
+# Versions: 1, first version; 2, confidence of the boundary and values shown to hold; 3, Sobol indices, statements,
+# repairs and seconds; 4, drifts that are expected to fail.
 FORMAT_VERSION = 4
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 

@@ -1,6 +1,6 @@
-"""Failing drifts of earlier runs, in a database of Hypothesis below `.tarl/stress`; they are replayed first.
+"""Keep failing drifts of earlier runs in a Hypothesis database below `.tarl/stress`, and replay them first.
 
-The replay only reports whether they still fail; it does not affect the search.
+The replay only reports whether they still fail; it does not influence the search.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ EPISODES = 4  # number of episodes per replayed drift
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """A test's failing drifts in a space, in the database in `folder`; `key` names both.
+    """The failing drifts of a test in a space, stored in the database in `folder`; `key` names test and space.
 
-    Hypothesis stores each drift in a file of its own, so that runs of several tests do not disturb each other.
+    Hypothesis stores each drift in its own file, so runs of several tests do not interfere.
     """
 
     folder: Path
     key: str
 
     def write(self, failures: Sequence[Failure]) -> None:
-        """Replace the stored drifts by the first MOST of these. Raise OSError if that is impossible."""
+        """Replace the stored drifts by the first MOST of these. Raise OSError if they cannot be written."""
         after = {_as_bytes(one.point) for one in failures[:MOST]}
         if after or self.folder.exists():
             check_writable(self.folder / "check")
@@ -50,11 +50,11 @@ class Kept:
             database.delete(self._name, value)
         for value in after - before:
             database.save(self._name, value)
-        if self._values() != after:  # Hypothesis raises no error if it cannot write
+        if self._values() != after:  # Hypothesis raises no error when it cannot write
             raise OSError(errno.EIO, "Hypothesis could not store the failing drifts", str(self.folder))
 
     def read(self, space: Space) -> list[Point]:
-        """Return the stored drifts of the space, except the nominal one, nearest first.
+        """Return the stored drifts of the space except the nominal one, nearest first.
 
         Return an empty list if the database is missing or damaged. Drifts of another space are skipped.
         """
@@ -74,7 +74,7 @@ class Kept:
         return DirectoryBasedExampleDatabase(str(self.folder))
 
     def _values(self) -> set[bytes]:
-        """Return what is stored. Raise OSError if the folder contains a pipe or a device, which could block."""
+        """Return the stored values. Raise OSError if the folder contains a pipe or a device, which could block."""
         for path in self.folder.rglob("*"):
             if not path.is_file() and not path.is_dir():
                 raise OSError(errno.EINVAL, "it is not a regular file", str(path))
@@ -86,7 +86,7 @@ def _as_bytes(point: Point) -> bytes:
 
 
 def _as_point(value: bytes, space: Space) -> Point | None:
-    """Return the point of the space that a stored value represents, or None."""
+    """Return the point for a stored value, or None if it is not a point of the space."""
     try:
         found = json.loads(value.decode("utf-8", "surrogatepass"))
         return {name: found[name] for name in space.extents} if _inside(space, found) else None
@@ -96,7 +96,7 @@ def _as_point(value: bytes, space: Space) -> Point | None:
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """A replayed stored drift: the number of passed episodes, and the mean loss of reward."""
+    """A replayed drift: how many episodes passed, and the mean loss of reward."""
 
     point: Point
     fails: bool
@@ -107,7 +107,7 @@ class Replayed:
 def replayed(
     points: Sequence[Point], rollout: Rollout, drift: str, seed: int, given: Guarantee
 ) -> Iterator[Replayed]:
-    """Run EPISODES episodes at each stored drift.
+    """Run EPISODES episodes at each stored drift, and yield the results.
 
     The drift still fails if one of these episodes fails, or if their mean loss is too large.
     """

@@ -1,4 +1,4 @@
-"""The noise of losses: how much losses vary for reasons other than the drift."""
+"""Estimate how much losses vary for reasons other than the drift."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 
-HIGHEST = 1.0 - LOWEST  # upper limit of losses, because LOWEST is the lower limit of margins
-# width of the normal curve that weights drifts by their mean loss, in units of the tolerated loss
+HIGHEST = 1.0 - LOWEST  # upper limit of losses, which corresponds to the lower limit LOWEST of margins
+# width of the normal curve that weights drifts by the difference of their mean losses, in units of the tolerated loss
 WIDTH = 0.3
-# weight (in degrees of freedom) of the typical variance in the average with the variances of similar drifts
+# degrees of freedom that the typical variance counts for when it is averaged with those of similar drifts
 LIKE = 2.0
-# an unpaired test is preferred if its standard error is at most this multiple of the paired test's
+# an unpaired test is preferred if its standard error is at most this many times that of the paired test
 WORSE = 1.2
-PRIOR = 4  # weight, in episodes, of the typical variance of all drifts
+PRIOR = 4  # number of episodes that the typical variance of all drifts counts for
 
 
 def cut_off(losses: Sequence[float]) -> Vector:
-    """Return losses, in units of the tolerated loss, limited to the range that the model distinguishes."""
+    """Return losses, in units of the tolerated loss, clipped to the range that the model distinguishes."""
     found: Vector = np.clip(np.array(losses), LOWEST, HIGHEST)
     return found
 
 
 def typical_variance(every: Sequence[Vector]) -> float:
-    """Return the mean variance of several drifts' losses, capped against noisy drifts.
+    """Return the mean variance of the losses of several drifts, capped against noisy drifts.
 
-    Losses above HIGHEST count as HIGHEST. If all losses of a drift are above it, the drift lies far beyond the boundary
-    and is ignored. The cap depends only on drifts whose losses differ from each other, because all episodes of the
-    other drifts may have the same reward.
+    Losses above HIGHEST count as HIGHEST. A drift whose losses are all above it lies far beyond the boundary and is
+    ignored. The cap uses only drifts whose losses differ from each other, because at other drifts every episode may
+    have the same reward.
     """
     found = [_squares(one) / (len(one) - 1) for one in every if _tells(one)]
     differ = [one for one in found if one > 0.0]
@@ -40,10 +40,10 @@ def typical_variance(every: Sequence[Vector]) -> float:
 
 
 def nominal_variance(given: Guarantee, typical: float) -> float:
-    """Return the variance that a pair's nominal episode adds to a loss, at most half the typical.
+    """Return the variance that a pair's nominal episode adds to a loss: at most half the typical variance.
 
-    The rewards of two episodes with the same seed may be similar, so the variance of the recorded rewards is only an
-    upper limit.
+    Two episodes with the same seed may have similar rewards, so the variance of the recorded rewards is only an upper
+    limit.
     """
     if len(given.totals) < 2 or given.tolerance <= 0.0:
         return typical / 2.0
@@ -54,8 +54,8 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
     """Return the variance of the losses of drifts whose mean loss is about `loss`.
 
     Episodes often vary more at the boundary than near nominal. Each drift is weighted by its degrees of freedom and by
-    how close its mean loss is to `loss`; the typical variance counts as `LIKE` degrees of freedom. The losses are cut
-    off, and drifts far beyond the boundary are ignored.
+    how close its mean loss is to `loss`; the typical variance counts as `LIKE` degrees of freedom. Losses are clipped,
+    and drifts far beyond the boundary are ignored.
     """
     known = [one for one in every if _tells(one)]
     if not known:
@@ -69,11 +69,11 @@ def variance_near(loss: float, every: Sequence[Vector], typical: float) -> float
 def pairing_wastes(
     given: Guarantee, paired: Sequence[Vector], unpaired: Sequence[Vector], episodes: int
 ) -> bool:
-    """Return whether nominal episodes with the same seeds would hardly improve a test of this many episodes.
+    """Return whether pairing with nominal episodes would hardly improve a test of this many episodes.
 
-    `paired` are the cut-off losses relative to the nominal episodes with the same seeds. `unpaired` are those relative
-    to the mean of the nominal episodes. Both are in units of the tolerated loss. An unpaired test takes half as many
-    episodes, but the recorded mean is uncertain.
+    Both arguments hold clipped losses in units of the tolerated loss: `paired` relative to the nominal episodes of the
+    same seeds, `unpaired` relative to the mean of the nominal episodes. An unpaired test needs half as many episodes,
+    but the recorded mean is uncertain.
     """
     if len(given.totals) < 2 or given.tolerance <= 0.0:
         return False
@@ -83,18 +83,18 @@ def pairing_wastes(
 
 
 def standard_error(losses: Vector, typical: float) -> float:
-    """Return the standard error of the mean of losses; their variance is shrunk towards the typical one."""
+    """Return the standard error of the mean loss, with the variance shrunk towards the typical one."""
     count = len(losses)
     return sqrt((_squares(losses) + PRIOR * typical) / (count - 1 + PRIOR) / count)
 
 
 def _tells(losses: Vector) -> bool:
-    """Return whether a variance can be estimated: two or more losses, not all at the limit."""
+    """Return whether the losses allow an estimate of the variance: two or more, and not all at the limit."""
     return len(losses) > 1 and min(losses.tolist()) < HIGHEST
 
 
 def _squares(losses: Vector) -> float:
-    """Return the sum of squared differences from the mean; for a few numbers, this is faster than numpy."""
+    """Return the sum of squared differences from the mean; faster than numpy for a few numbers."""
     values = losses.tolist()
     mean = sum(values) / len(values)
     return float(sum((one - mean) ** 2 for one in values))

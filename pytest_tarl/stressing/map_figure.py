@@ -9,11 +9,11 @@ from pytest_tarl.spaces import nominal
 from pytest_tarl.stressing.findings import Failure, MarginMap, Stress
 from pytest_tarl.stressing.svg_text import INK, svg_text
 
-# px: side length of the map, and the empty space on the left, above and below
+# px: side length of the map, and the margins to the left, above and below
 SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130
-COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # light colours, below dark marks
+COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # light, so that dark marks stand out
 NAMES = {"holds": "holds", "unsure": "undecided", "fails": "fails"}
-SURE = 2.0  # number of standard deviations; a margin closer to 0 counts as undecided
+SURE = 2.0  # a margin closer to 0 than this many standard deviations counts as undecided
 
 
 def map_figure(stress: Stress) -> str:
@@ -61,7 +61,7 @@ def answer(margin: float, spread: float) -> str:
 
 
 def _cells(found: MarginMap) -> Iterator[str]:
-    """Yield a rectangle per run of equal cells in a row, and the predicted boundary."""
+    """Yield a rectangle for each run of equal cells in a row, and the predicted boundary."""
     count = len(found.margins)
     side = SIZE / count
     for row, (margins, spreads) in enumerate(zip(found.margins, found.spreads, strict=True)):
@@ -79,7 +79,7 @@ def _cells(found: MarginMap) -> Iterator[str]:
 
 
 def _boundary(found: MarginMap) -> str:
-    """Return an SVG path along the edges between cells with margins above and below 0."""
+    """Return an SVG path along the cell edges between margins above and below 0."""
     count = len(found.margins)
     side = SIZE / count
     edges = []
@@ -95,7 +95,7 @@ def _boundary(found: MarginMap) -> str:
 
 
 def _marks(stress: Stress, found: MarginMap) -> Iterator[str]:
-    """Yield a ring at the nominal drift, and a cross at each confirmed failure in the plane."""
+    """Yield a ring at the nominal drift, and a cross at each confirmed failure in the plane of the map."""
     x, y = _place(found, dict(stress.space.nominal))
     yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="#fff" stroke="{INK}" stroke-width="2"/>'
     for one in stress.failures:

@@ -12,7 +12,7 @@ from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.guarantee import LOWEST
 from pytest_tarl.stressing.prediction import Prediction
 
-CELLS = 25  # number of cells in each direction
+CELLS = 25  # number of cells per direction
 
 
 def importance(curves: Sequence[Curve]) -> dict[str, float]:
@@ -26,7 +26,7 @@ def importance(curves: Sequence[Curve]) -> dict[str, float]:
 
 
 def lost(curve: Curve) -> float:
-    """Return the largest loss along a ray, in margins; at 1, the guarantee is just met."""
+    """Return the largest loss of margin along a ray; at 1, the guarantee is only just met."""
     return max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
 
 

@@ -1,7 +1,7 @@
-"""Compare margins before and after a change of the code.
+"""Compare the margins before and after a code change.
 
-A direction is more fragile if the guarantee now fails at a value at which it was shown to hold before. The probability
-that such a verdict is wrong is at most 1 - confidence.
+A direction became more fragile if the guarantee now fails at a value that was shown to hold before. This verdict is
+wrong with a probability of at most 1 - confidence.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Change = Literal["more fragile", "more robust", "no significant change", "not co
 
 @dataclass(frozen=True)
 class Row:
-    """One direction before and after a change of the code; None where the direction does not exist."""
+    """One direction before and after a code change; None where the direction does not exist."""
 
     title: str
     before: Margin | None
@@ -43,7 +43,7 @@ class Row:
 
     @property
     def cells(self) -> tuple[str, str]:
-        """Return the boundary before and after the change, in words."""
+        """Return in words where the boundary was and is."""
         return (words(self.before) if self.before else "-", words(self.after) if self.after else "-")
 
 

@@ -1,6 +1,6 @@
 """The margins of a test: how far each direction may change without breaking the guarantee.
 
-They are stored in a small file below `.tarl/margins`, which is meant to be committed.
+They are stored in a small file below `.tarl/margins`, intended to be committed.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ DIGITS = 6  # significant digits of a value
 class Margin:
     """The margin of one side of a range, or of an option.
 
-    The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`; each of the two is None if nothing was
-    shown. The values of a range are numbers. For an option, 0 stands for the nominal option and 1 for this option.
+    The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`; either is None if nothing was shown.
+    Values of a range are numbers. For an option, 0 is the nominal option and 1 is this one.
     """
 
-    name: str  # name of a direction; an option is named with its value, as in camera='down'
+    name: str  # name of a direction; an option includes its value, as in camera='down'
     nominal: float
     end: float
     holds_to: float | None

@@ -1,7 +1,7 @@
 """Run linear algebra in one thread.
 
-Sums then keep their order, so a result does not depend on the number of processors. Small matrices also become faster:
-when other processes run, the threads of BLAS mostly wait for each other.
+Sums then keep their order, so results do not depend on the number of processors. Small matrices also become faster:
+with other processes running, BLAS threads mostly wait for each other.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Result = TypeVar("Result")
 
 
 def one_thread(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-    """Return a function that runs `function` with one BLAS thread; other code keeps its number of threads."""
+    """Return a function that runs `function` with one BLAS thread; other code is not limited."""
 
     @wraps(function)
     def limited(*positional: Parameters.args, **named: Parameters.kwargs) -> Result:
@@ -30,7 +30,7 @@ def one_thread(function: Callable[Parameters, Result]) -> Callable[Parameters, R
 
 @cache
 def _libraries() -> ThreadpoolController:
-    """Return a controller of the BLAS libraries that are loaded at the first call, such as numpy's."""
+    """Return a controller of the BLAS libraries (such as numpy's) that are loaded at the first call."""
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()

@@ -1,4 +1,4 @@
-"""The report page of a stress test: one file without scripts, with sentences, figures and tables."""
+"""The report page of a stress test: a single file without scripts, with sentences, figures and tables."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from pytest_tarl.stressing.words import (
     undecided_promises,
 )
 
-WIDTH, HEIGHT, EDGE = 640, 200, 44  # px: size of a figure; EDGE is the space for the axes
-TOP, BOTTOM = 1.25, -1.25  # range of margins that the figure shows; margins outside are drawn at its edge
+WIDTH, HEIGHT, EDGE = 640, 200, 44  # px; EDGE is the space for the axes
+TOP, BOTTOM = 1.25, -1.25  # range of margins in the figure; margins outside it are drawn at its edge
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem; color: #1c2333 }
 h1 { font-size: 1.4rem } h2 { font-size: 1.1rem; margin-top: 2rem } svg { width: 100%; height: auto }
@@ -46,7 +46,7 @@ COLOURS = {"fails": "#b3261e", "holds": "#1f7a4d", "open": "#8a6d00"}
 
 
 def render(stress: Stress) -> str:
-    """Return the page's text."""
+    """Return the page as HTML."""
     title = escape(f"Stress of {stress.test}, {stress.drift}")
     return "\n".join(
         [
@@ -155,7 +155,7 @@ def _table(stress: Stress, name: str, measured: list[tuple[float, Evidence]]) ->
 
 
 def _repairs(stress: Stress) -> Iterator[str]:
-    """Yield the result of each search for a repair, with a table of the boundaries that the repair moves."""
+    """Yield the result of each repair search, with a table of the boundaries that the repair moves."""
     if stress.repairs is None:
         return
     yield "<h2>Repair</h2>"

@@ -1,7 +1,7 @@
 """Predict the nearest failing drift from the drifts tried so far.
 
-Two models, of the loss and of the failure rate, estimate the probability that a drift fails. As in Bayesian
-optimisation, the search then tries the most promising drift.
+A model of the loss and a model of the failure rate give the probability that a drift fails. The search then tries the
+most promising drift, as in Bayesian optimisation.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covar
 
 DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
-# number of refinements around the best drift; standard deviation of the first one, which each further one halves
+# number of refinements around the best drift; standard deviation of the first one, which is halved each time
 ROUNDS, SPREAD = 5, 0.15
-STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared at these multiples of their vectors
-NEAR = 64  # maximum number of tried drifts whose multiples by STRETCHED are compared
-RAREST = 0.007  # minimum failure rate that the model assumes at nominal
-LEAST_LOSS = 0.25  # minimum predicted loss of a drift that is used to estimate the factors of seeds
-LOGIT = 4.0  # difference of logits that is equivalent to the whole tolerated loss
+STRETCHED = (0.9, 1.0, 1.1)  # tried drifts are also compared after scaling by these factors
+NEAR = 64  # maximum number of tried drifts that are scaled by STRETCHED
+RAREST = 0.007  # minimum failure rate assumed at nominal
+LEAST_LOSS = 0.25  # minimum predicted loss of the drifts from which the factors of seeds are estimated
+LOGIT = 4.0  # difference of logits that corresponds to the tolerated loss
 
 
 @dataclass(frozen=True)
 class Sample:
     """A tried drift: its vector, mean loss, number of failed episodes, and episode seeds.
 
-    `loss` is in units of the tolerated loss, and `spread` is its standard error. `sources` holds, for each episode, the
-    pool and the number of its seed. `losses` holds the losses of the episodes in the same order.
+    `loss` is in units of the tolerated loss, with standard error `spread`. For each episode, `sources` has its pool and
+    seed number, and `losses` its loss, in the same order.
     """
 
     vector: Vector
@@ -51,9 +51,9 @@ class Sample:
 
 @dataclass(frozen=True)
 class Shown:
-    """What fresh episodes can show: the smallest excess loss or failure rate that they detect reliably.
+    """The smallest excess loss and failure rate that fresh episodes detect reliably.
 
-    `depth` is the excess of the loss over the tolerated loss, in units of the tolerated loss.
+    `depth` is how far the loss exceeds the tolerated loss, in units of the tolerated loss.
     """
 
     depth: float
@@ -66,7 +66,7 @@ class Shown:
 
 
 class Prediction:
-    """A model of the margin of all drifts with the same options."""
+    """A model of the margins of all drifts with the same options."""
 
     @one_thread
     def __init__(
@@ -81,11 +81,11 @@ class Prediction:
         origin: float = 0.0,
         before: Prediction | None = None,
     ) -> None:
-        """Fit the model; `typical` is the variance of a loss, `paired` the part that the nominal episode contributes.
+        """Fit the model; `typical` is the variance of a loss, of which the nominal episode contributes `paired`.
 
         `counted` are further drifts that ran on fresh seeds: vector, number of failures, number of episodes. `origin`
-        is the loss at the zero vector, which is not 0 if the drifts have options that are not nominal. `before` is an
-        earlier model of fewer drifts; it makes fitting faster.
+        is the loss at the zero vector; it differs from 0 if the drifts have options that are not nominal. `before` is
+        an earlier model of fewer drifts, which makes fitting faster.
         """
         self.coordinates, self.given, self.shown = coordinates, given, shown
         self._samples, self._typical = samples, typical
@@ -126,7 +126,7 @@ class Prediction:
 
     @property
     def luck(self) -> float:
-        """Return the variance of a seed's effect, common to all drifts, on the failure rate's logit."""
+        """Return the variance of a seed's effect on the logit of the failure rate, which is common to all drifts."""
         return 0.0 if self._rate_fit is None else self._rate_fit.luck
 
     @property
@@ -138,17 +138,17 @@ class Prediction:
         return dict(zip(map(tuple, self._counted.tolist()), logits, strict=True))
 
     def deeper(self, times: float) -> Prediction:
-        """Return a copy that requires `times` as large an excess over the guarantee as fresh episodes can detect."""
+        """Return a copy that requires `times` as much excess over the guarantee as fresh episodes can detect."""
         other = copy(self)
         other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
         return other
 
     @one_thread
     def promising(self, limit: float, draws: np.random.Generator) -> tuple[Vector, float]:
-        """Return the vector with the largest expected gain, and that gain.
+        """Return the vector with the largest expected gain, and the gain.
 
-        The gain is the probability that the drift fails, times the distance by which it is nearer than `limit`, in
-        units of the ranges. This is constrained expected improvement (Gelbart et al. 2014) with a known objective.
+        The gain is the probability that the drift fails, multiplied by how much nearer than `limit` it is, in units of
+        the ranges. This is constrained expected improvement (Gelbart et al. 2014) with a known objective.
         """
         room = float(np.sqrt(max(limit**2 - self.coordinates.options, 0.0)))
 
@@ -161,10 +161,10 @@ class Prediction:
 
     @one_thread
     def shortest(self, errors: float, limit: float, draws: np.random.Generator) -> Vector | None:
-        """Return the shortest vector up to `limit` that the model expects to fail, or None.
+        """Return the shortest vector up to length `limit` that the model expects to fail, or None.
 
-        The failure must be expected even if the true losses are `errors` standard deviations below the predicted ones.
-        The search is random and may miss the shortest vector.
+        The failure must be expected even if the true losses are `errors` standard deviations below the predictions. The
+        search is random and may miss the shortest vector.
         """
 
         def scores(vectors: Vector) -> Vector:
@@ -184,7 +184,7 @@ class Prediction:
 
     @one_thread
     def shown_by(self, vectors: Vector) -> tuple[Vector, Vector]:
-        """Return the probabilities, at each vector, that fresh episodes show too large a loss or too many failures."""
+        """Return, for each vector, the probabilities that fresh episodes show a large loss and a large failure rate."""
         (mean, deviation), rates = self._moments(vectors)
         by_loss = _normal((mean - 1.0 - self.shown.depth) / deviation)
         if rates is None:
@@ -194,10 +194,10 @@ class Prediction:
 
     @one_thread
     def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
-        """Return how far each vector's predicted loss or failure rate exceeds what fresh episodes can show.
+        """Return how far each vector's predicted loss or failure rate exceeds what fresh episodes can detect.
 
         The prediction is first lowered by `errors` standard deviations. The result is the larger of the two excesses,
-        in units of the tolerated loss; its shape is (drifts,).
+        in units of the tolerated loss, with shape (drifts,).
         """
         if errors == 0.0:
             return self._excess(*self._means(vectors))
@@ -227,7 +227,7 @@ class Prediction:
         return self.moments(vectors)[0]
 
     def _means(self, vectors: Vector) -> tuple[Vector, Vector | None]:
-        """Return the predicted losses at vectors, and the predicted logits of the failure rate, or None."""
+        """Return the predicted losses at vectors, and the predicted logits of the failure rate or None."""
         for_losses, for_rates = self._priors(vectors)
         mean: Vector = self._loss_fit.field.means(for_losses) + self._origin
         if self._rate_fit is None or for_rates is None:
@@ -235,7 +235,7 @@ class Prediction:
         return mean, self._rate_fit.field.means(for_rates)
 
     def _moments(self, vectors: Vector) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector] | None]:
-        """Return means and standard deviations at vectors: those of the losses, and those of the logits or None."""
+        """Return the means and standard deviations at vectors: of the losses, and of the logits or None."""
         for_losses, for_rates = self._priors(vectors)
         mean, deviation = self._loss_fit.field.moments(for_losses, variance(vectors * self._loss_fit.units))
         mean = mean + self._origin
@@ -246,7 +246,7 @@ class Prediction:
 
     @cached_property
     def _shared(self) -> float:
-        """Return the relative error of all predicted losses due to the choice of common seeds."""
+        """Return the relative error of all predicted losses that comes from the choice of common seeds."""
         if not self._samples:
             return 0.0
         return shared_error(self._samples, self._at_known[0], self._typical)
@@ -257,7 +257,7 @@ class Prediction:
         return self._means(self._vectors)
 
     def _priors(self, vectors: Vector) -> tuple[Matrix, Matrix | None]:
-        """Return vectors' prior covariances with the fitted drifts: of losses, and of logits or None."""
+        """Return the prior covariances of vectors with the fitted drifts: of losses, and of logits or None."""
         units, rates = self._loss_fit.units, self._rate_fit
         if rates is None:
             return covariance(vectors * units, self._vectors * units), None
@@ -272,9 +272,9 @@ class Prediction:
         return found
 
     def _promising_known(self, room: float) -> Vector:
-        """Return the shortest tried vectors that fail according to the model, and those that are closest to failing.
+        """Return the shortest tried vectors that the model expects to fail, and those closest to failing.
 
-        The result has at most NEAR vectors, none longer than `room`; its shape is (drifts, ranges).
+        There are at most NEAR vectors, none longer than `room`; shape (drifts, ranges).
         """
         excess, lengths = self._excess(*self._at_known), np.linalg.norm(self._vectors, axis=1)
         scores = np.where(excess >= 0.0, 10.0 - lengths, np.maximum(excess, -5.0))
@@ -285,7 +285,7 @@ class Prediction:
     def _largest(
         self, score: Callable[[Vector], Vector], room: float, draws: np.random.Generator
     ) -> tuple[Vector, float]:
-        """Return the best-scored of random vectors of length at most `room`, and its score."""
+        """Return the random vector of length at most `room` with the best score, and its score."""
         low, high = self.coordinates.low, self.coordinates.high
         shape = (DRAWN, len(low))
         drawn = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
@@ -308,11 +308,11 @@ class Prediction:
 
 
 def shared_error(samples: Sequence[Sample], means: Vector, typical: float) -> float:
-    """Return the relative error of all predicted losses due to the choice of common seeds.
+    """Return the relative error of all predicted losses that comes from the choice of common seeds.
 
-    With some seeds, all drifts may lose more than on average by the same factor, for example because there is more
-    reward to lose. Drifts that share their seeds share this error, so more drifts do not reduce it. `means` are the
-    predicted losses of the samples, and `typical` is the variance of a loss.
+    With some seeds, all drifts lose more than average by the same factor, for example because there is more reward to
+    lose. Drifts with the same seeds share this error, so more drifts do not reduce it. `means` are the predicted losses
+    of the samples, and `typical` is the variance of a loss.
     """
     products: dict[tuple[str, int], float] = {}
     squares: dict[tuple[str, int], float] = {}
@@ -328,7 +328,7 @@ def shared_error(samples: Sequence[Sample], means: Vector, typical: float) -> fl
 
 
 def _within(vectors: Vector, room: float, draws: np.random.Generator) -> Vector:
-    """Return the vectors; those longer than `room` are shortened to a random length."""
+    """Return the vectors, with those longer than `room` shortened to a random length."""
     lengths = np.linalg.norm(vectors, axis=1)
     shares = np.where(
         lengths > room, room / np.maximum(lengths, 1e-9) * draws.random(len(vectors)) ** 0.25, 1.0

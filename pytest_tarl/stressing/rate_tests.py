@@ -1,9 +1,9 @@
-"""Test on fresh seeds whether drifts of a chain fail too often, with few episodes for each further drift.
+"""Test on fresh seeds whether the drifts of a chain fail too often, with few episodes per additional drift.
 
-All drifts of a chain run on the same seeds. A seed that fails under a drift often fails under a nearer one as well. A
-test therefore first runs the seeds that failed under the previous drift of the chain. It counts the failures among the
-first 16, 32, 64 and 128 seeds of the chain, and treats seeds that have not run as passed. This can only hide failures.
-A test that stops early is therefore wrong no more often than a test that runs all seeds.
+All drifts of a chain run on the same seeds. A seed that fails under one drift often fails under a nearer one as well,
+so each test starts with the seeds that failed under the previous drift. It counts the failures among the first 16, 32,
+64 and 128 seeds of the chain, and treats seeds that have not run as passed. This can only hide failures, so a test that
+stops early is wrong no more often than one that runs all seeds.
 """
 
 from __future__ import annotations
@@ -16,16 +16,15 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.evaluating import Count, Evaluator
 from pytest_tarl.stressing.guarantee import hopeful, most_passed
 
-LOOKS = (16, 32, 64, 128)  # numbers of seeds, from the first one, among which a test counts the failures
-# share of the risk for the test at each of LOOKS; the last share is the largest, because a test with more seeds can
-# show smaller failure rates
+LOOKS = (16, 32, 64, 128)  # a test counts the failures among these numbers of seeds, from the first seed on
+# share of the risk for each of LOOKS; the last gets the most, because more seeds can show smaller failure rates
 SPENT = (0.1, 0.15, 0.25, 0.5)
-BLOCK = 8  # number of episodes after which a test checks for a decision
+BLOCK = 8  # number of episodes between two checks for a decision
 
 
 @dataclass
 class RateTests:
-    """The tests of one chain for drifts that fail too often; each test has the error probability `risk`."""
+    """The tests of a chain for drifts that fail too often; `risk` is the error probability of each test."""
 
     evaluator: Evaluator
     pool: str
@@ -34,9 +33,9 @@ class RateTests:
     failed: set[int] = field(default_factory=set)  # the seeds in `ran` whose episodes failed
 
     def confirm(self, point: Point) -> bool:
-        """Return whether fresh episodes show that too few episodes pass at a point. Raise BudgetSpentError."""
+        """Return whether fresh episodes show that too few pass at a point. Raise BudgetSpentError."""
         looks, groups = self._looks(), self._groups()
-        outcomes: dict[int, bool] = {}  # number of a seed → whether its episode failed
+        outcomes: dict[int, bool] = {}  # seed number → whether its episode failed
         shown = False
         try:
             for block in _blocks(groups):
@@ -57,7 +56,7 @@ class RateTests:
         return shown
 
     def _looks(self) -> list[tuple[int, int]]:
-        """Return pairs: a number of seeds, and how many must fail to show that the drift fails too often."""
+        """Return pairs of a number of seeds and how many of them must fail to show that the drift fails too often."""
         given = self.evaluator.guarantee
         return [
             (size, size - most_passed(given, size, self.risk * share, "rate"))
@@ -65,11 +64,11 @@ class RateTests:
         ]
 
     def _estimate(self, outcomes: Mapping[int, bool]) -> tuple[float, int]:
-        """Estimate the number of failures under this drift; return the estimate and the number of seeds it covers.
+        """Estimate the number of failures under this drift; return it with the number of seeds that it covers.
 
-        It covers the seeds that ran under this drift or under the previous one. Seeds that failed under the previous
-        drift, and seeds that passed there, are estimated separately, because only some of each may have run under this
-        drift. If none of those that passed there has run, all of them count as passed.
+        The estimate covers the seeds that ran under this drift or the previous one. Seeds that failed under the
+        previous drift are estimated separately from those that passed, because only some of each may have run under
+        this drift. If none of the passed seeds has run again, they all count as passed.
         """
         new = [failed for row, failed in outcomes.items() if row not in self.ran]
         failures, seeds = float(sum(new)), len(new)
@@ -82,7 +81,7 @@ class RateTests:
     def _groups(self) -> list[list[int]]:
         """Return the seeds in the order in which they run.
 
-        Those that failed under the previous drift come first, then those that did not run under it, then the rest.
+        First the seeds that failed under the previous drift, then those that did not run under it, then the rest.
         """
         every = range(LOOKS[-1])
         parts = (
@@ -101,10 +100,10 @@ def _blocks(groups: Sequence[Sequence[int]]) -> Iterator[list[int]]:
 
 
 def _forecast(groups: Sequence[Sequence[int]], outcomes: Mapping[int, bool]) -> float:
-    """Forecast all seeds' failures: the remaining ones fail a little more often than recent ones.
+    """Forecast the failures of all seeds: remaining seeds fail slightly more often than recent ones.
 
-    If there are several groups, the first one consists of seeds that failed under another drift. Its failures say
-    little about the other groups, so all remaining seeds of those are assumed to fail.
+    If there are several groups, the first has the seeds that failed under another drift. Its failures say little about
+    the other groups, whose remaining seeds are therefore all assumed to fail.
     """
     known = 0.0
     for number, group in enumerate(groups):

@@ -1,7 +1,7 @@
-"""Straight lines through a space, from its nominal point to a farthest one.
+"""Straight lines through a space, from the nominal point to a farthest one.
 
-A space declares directions: ranges of numbers and choices of options. A point has a number for each direction; for a
-choice it is the index of the option.
+A space declares directions, which are ranges of numbers or choices of options. A point has one number per direction;
+for a choice, this is the index of the option.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 
-SWEEP = (0.25, 0.5, 0.75, 1.0)  # places t at which the coarse sweep runs episodes
+SWEEP = (0.25, 0.5, 0.75, 1.0)  # positions t of the coarse sweep
 
 
 @dataclass(frozen=True)
@@ -23,16 +23,16 @@ class Ray:
     space: Space
     names: tuple[str, ...]
     farthest: Point
-    extra: tuple[float, ...] = ()  # places t at which the sweep runs episodes in addition to the usual ones
+    extra: tuple[float, ...] = ()  # positions t that the sweep visits in addition to the usual ones
 
     @property
     def continuous(self) -> bool:
-        """Return whether every t gives a different point; False on a ray to an option."""
+        """Return whether every t gives a different point; False for a ray to an option."""
         return not any(isinstance(self.space.extents[name], Choice) for name in self.names)
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Return the places t of the coarse sweep, starting at the far end."""
+        """Return the positions t of the coarse sweep, starting at the far end."""
         places = {*SWEEP, *self.extra} if self.continuous else {1.0}
         return tuple(sorted(places, reverse=True))
 
@@ -42,7 +42,7 @@ class Ray:
         return distance(self.space, self.farthest)
 
     def point(self, t: float) -> Point:
-        """Return the point at t; a choice has the farthest option for every t above 0."""
+        """Return the point at t; a choice has its farthest option at every t above 0."""
         start = self.space.nominal
         return {
             name: _between(extent, start[name], self.farthest[name], t)
@@ -50,12 +50,12 @@ class Ray:
         }
 
     def value(self, t: float) -> float:
-        """Return the number of the ray's first direction at t."""
+        """Return the value of the ray's first direction at t."""
         return self.point(t)[self.names[0]]
 
 
 def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
-    """Return the rays along single directions: to both ends of a range, to each option."""
+    """Return the rays along single directions: to both ends of each range, and to each option."""
     found = []
     for name, extent in space.extents.items():
         usual = nominal(extent)
@@ -69,7 +69,7 @@ def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
 
 
 def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
-    """Return the ray to the point that combines the values of several rays, each at its given place."""
+    """Return the ray to the point that combines the values of several rays, each at its given position."""
     space = parts[0][0].space
     farthest = dict(space.nominal)
     for ray, t in parts:
@@ -80,13 +80,13 @@ def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
 def distance(space: Space, point: Point) -> float:
     """Return the Euclidean distance of a point from nominal, in units of the declared ranges.
 
-    An option other than the nominal one counts as 1.
+    An option that is not nominal counts as 1.
     """
     return sqrt(sum(offset(extent, point[name]) ** 2 for name, extent in space.extents.items()))
 
 
 def offset(extent: Span | Choice, number: float) -> float:
-    """Return a number's distance from nominal in units of the range; 1 for another option."""
+    """Return a number's distance from nominal in units of the range; 1 for an option that is not nominal."""
     away = abs(number - nominal(extent))
     return float(away > 0) if isinstance(extent, Choice) else away / (extent.high - extent.low)
 

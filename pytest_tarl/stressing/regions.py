@@ -1,4 +1,4 @@
-"""Regions of drifts for the search of a repair: from a confirmed failure to the ends of its directions."""
+"""Regions in which to search for a repair: from a confirmed failure to the ends of its directions."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from pytest_tarl.stressing.findings import Failure
 from pytest_tarl.stressing.rays import Ray
 from pytest_tarl.stressing.words import shown
 
-# sizes of the regions, in the order of the attempts, as shares of the way from the failure to the ends of the ranges
+# size of the region in each attempt, as a share of the way from the failure to the ends of the ranges
 REACH = (1.0, 0.25)
 
 
 @dataclass(frozen=True)
 class Region:
-    """Drifts beyond a failure; `words` describe them.
+    """The drifts beyond a failure; `words` describe them.
 
-    An episode draws the directions of `drift` at random and takes all other values from `base`.
+    Each episode draws the values of `drift` at random and takes all others from `base`.
     """
 
     base: Point
@@ -28,7 +28,7 @@ class Region:
 
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
-    """Yield the regions beyond a failure, widest first, with equal shares of what remains of every range."""
+    """Yield the regions beyond a failure, widest first; each covers the same share of what is left of every range."""
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []
@@ -47,14 +47,14 @@ def regions(space: Space, failed: Failure) -> Iterator[Region]:
 
 
 def end(extent: Span | Choice, number: float) -> float:
-    """Return a range's end on the side of a number; of an option, the number itself."""
+    """Return the end of a range on the side of a number; for an option, return the number itself."""
     if isinstance(extent, Choice):
         return number
     return extent.high if number > nominal(extent) else extent.low
 
 
 def outwards(space: Space, failed: Failure) -> Ray:
-    """Return the ray from nominal through a failure to the end of the space."""
+    """Return the ray from nominal through a failure to the edge of the space."""
     reached = []
     for name in failed.names:
         extent, usual = space.extents[name], space.nominal[name]
@@ -69,7 +69,7 @@ def outwards(space: Space, failed: Failure) -> Ray:
 
 
 def _fixed(space: Space, failed: Failure) -> object:
-    """Return the value that stands for a region in which nothing varies.
+    """Return the value that describes a region in which nothing varies.
 
     It is the value of the failing direction, or a tuple of values if several directions fail together.
     """

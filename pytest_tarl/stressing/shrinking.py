@@ -11,10 +11,10 @@ SHRINKS = 4  # maximum number of attempts per direction
 
 
 def shrunk(point: Point, evaluator: Evaluator) -> Point:
-    """Move single directions of a failing point towards nominal while it still fails; return the result.
+    """Move single directions of a failing point towards nominal as long as it still fails.
 
-    For each direction, the nominal value is tried first, then smaller and smaller steps. Hypothesis would instead
-    shrink to simple values, which need not be near nominal. Raise BudgetSpentError.
+    For each direction, the nominal value is tried first, then smaller and smaller steps. Hypothesis's own shrinking
+    would prefer simple values, which need not be near nominal. Raise BudgetSpentError.
     """
     space, now = evaluator.space, dict(point)
     for name in sorted(now, key=lambda one: -distance(space, {**space.nominal, one: now[one]})):
@@ -33,9 +33,9 @@ def shrunk(point: Point, evaluator: Evaluator) -> Point:
 
 
 def weighted(space: Space, name: str, number: float, weight: float) -> float:
-    """Return the number that lies at the share `weight` of the way from nominal to `number`.
+    """Return the number at share `weight` of the way from nominal to `number`.
 
-    An option changes at any weight above 0.
+    An option changes at every weight above 0.
     """
     usual = space.nominal[name]
     if isinstance(space.extents[name], Choice):

@@ -1,7 +1,7 @@
-"""Sobol indices: how much of the margin's variance over the declared space each direction explains.
+"""Sobol indices: how much of the margin's variance over the declared space comes from each direction.
 
-The package SALib creates the sample and the estimates (Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018).
-SALib is imported only when needed, because it imports pandas and matplotlib.
+SALib creates the sample and the estimates (Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018). It is imported only
+when needed, because it imports pandas and matplotlib.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ ROWS = (
     128,
     64,
     32,
-)  # possible sizes of the base sample; a Sobol sequence is balanced at powers of two
-POOL = "sobol"  # name of the pool of seeds for the episodes of this analysis
+)  # possible sizes of the base sample; Sobol sequences are balanced at powers of two
+POOL = "sobol"  # name of the pool of seeds for this analysis
 RESAMPLES = 200  # number of bootstrap resamples for the intervals
 
 
 def sobol(evaluator: Evaluator) -> Sobol | None:
-    """Return the indices, computed with the episodes that the search left over.
+    """Compute the indices with the episodes that the search left over.
 
-    Return None if too few episodes are left or SALib is not installed. All points of a row of the sample share a seed
+    Return None if too few episodes are left or SALib is not installed. All points in a row of the sample share a seed
     and are paired with the nominal episode of that seed. Raise BudgetSpentError if the time limit is reached.
     """
     size = len(evaluator.space.extents)
@@ -51,7 +51,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
         calc_second_order=False,
         num_resamples=RESAMPLES,
         conf_level=CONFIDENCE,
-        seed=_seed(evaluator) or 1,  # SALib treats 0 as no seed
+        seed=_seed(evaluator) or 1,  # SALib treats 0 as "no seed"
     )
     columns = [found[key].tolist() for key in ("S1", "S1_conf", "ST", "ST_conf")]
     shares = tuple(Share(name, *map(_short, four)) for name, *four in zip(names, *columns, strict=True))
@@ -59,12 +59,12 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
 
 
 def affordable(size: int, left: int) -> int:
-    """Return the sample rows that `left` episodes allow for `size` directions; 0 if too few."""
+    """Return how many sample rows `left` episodes allow for `size` directions, or 0 if there are too few."""
     return next((rows for rows in ROWS if rows * (size + 3) <= left), 0) if size > 1 else 0
 
 
 def _margins(evaluator: Evaluator, rows: int) -> Any:
-    """Return the margin of one episode for each point of the sample, shape (rows × (directions + 2),)."""
+    """Return the margin of one episode per point of the sample, shape (rows × (directions + 2),)."""
     from SALib.sample import sobol as sampling
 
     space, given = evaluator.space, evaluator.guarantee
@@ -82,7 +82,7 @@ def _margins(evaluator: Evaluator, rows: int) -> Any:
 
 
 def _point(space: Space, numbers: Any) -> Point:
-    """Return the point for numbers from 0 to 1, one per direction."""
+    """Return the point for numbers from 0 to 1, one for each direction."""
     return {
         name: _number(extent, float(number))
         for (name, extent), number in zip(space.extents.items(), numbers, strict=True)

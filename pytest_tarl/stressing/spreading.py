@@ -1,4 +1,4 @@
-"""Spread drifts evenly around nominal, in direction and distance, by a Halton sequence (Halton 1960)."""
+"""Spread drifts evenly around nominal, in direction and distance, with a Halton sequence (Halton 1960)."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
-CLOSEST = 0.4  # minimum length of a random vector of drifts; the maximum length is 1
-PART = 0.8  # share of the vectors in which a given direction changes
-# minimum and maximum length of the vectors that `around` yields, as shares of the length of the given vector
+CLOSEST = 0.4  # minimum length of a random vector; the maximum is 1
+PART = 0.8  # share of the vectors that change a given direction
+# minimum and maximum length of the vectors from `around`, as shares of the given vector's length
 SHORTER = (0.8, 0.98)
-ASIDE = 0.25  # standard deviation of the change in each coordinate, as a share of the given vector's length
+ASIDE = 0.25  # standard deviation of the change of each coordinate, as a share of the given vector's length
 
 
 def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
-    """Yield vectors endlessly, evenly distributed over directions, signs and lengths from CLOSEST to 1.
+    """Yield endless vectors, spread evenly over directions, signs and lengths from CLOSEST to 1.
 
-    A direction whose nominal value is an end of its range has only one sign. The caller multiplies the vectors by the
+    A direction has only one sign if its nominal value is an end of its range. The caller scales the vectors by the
     maximum distance of its search.
     """
     size = len(coordinates.spans)
@@ -37,7 +37,7 @@ def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vec
 
 
 def around(coordinates: Coordinates, vector: Vector, draws: np.random.Generator) -> Iterator[Vector]:
-    """Yield vectors endlessly that are a little shorter than `vector` and have a similar direction."""
+    """Yield endless vectors that are slightly shorter than `vector` and have a similar direction."""
     length = float(np.linalg.norm(vector))
     while True:
         moved = vector + ASIDE * length * draws.standard_normal(len(vector))

@@ -1,4 +1,4 @@
-"""Stress-test one test in one space: all single directions, then their combinations."""
+"""Stress-test one test in one space: first all single directions, then their combinations."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from pytest_tarl.stressing.sobol_indices import sobol
 
 @dataclass(frozen=True, slots=True)
 class Risks:
-    """The error probabilities of the claims of a run.
+    """The error probabilities for the claims of a run.
 
-    `each` is the risk of one claim: the claim about the nominal drift, or the claim about one direction. `combinations`
-    is the total risk of the claims about all combinations.
+    `each` is the risk of one claim: about the nominal drift, or about one direction. `combinations` is the risk of all
+    claims about combinations together.
     """
 
     each: float
@@ -36,13 +36,13 @@ class Risks:
 
 
 def divided(alpha: float, directions: int) -> Risks:
-    """Divide alpha among the claims; combinations get half, since the nearest failure is usually a combination."""
+    """Divide alpha among the claims; combinations get half, because the nearest failure is usually one."""
     return Risks(min(alpha / 2 / (directions + 1), FAR_RISK), alpha / 2)
 
 
 @dataclass(frozen=True)
 class Request:
-    """The test and the space to stress, and the settings."""
+    """The test and the space to stress, with the settings."""
 
     rollout: Rollout
     fixture: Fixture
@@ -50,15 +50,15 @@ class Request:
     options: Options
     drift: str
     progress: Progress
-    source: Source | None = None  # statements to record in failing episodes; None records none
+    source: Source | None = None  # statements to record in failing episodes, if any
 
 
 def stress(request: Request, *, combined: bool = True) -> Stress:
-    """Find the boundary in each direction and, if `combined` is true, failing combinations of directions.
+    """Find the boundary in each direction and, with `combined`, failing combinations of directions.
 
-    A failure of the guarantee is reported only if fresh seeds confirm it. The probability that any such report is wrong
-    is at most alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if
-    the test itself is broken.
+    A failure is reported only if fresh seeds confirm it. The probability that any such report is wrong is at most
+    alpha. If Ctrl-C is pressed or the budget is spent, return the results so far. Raise RecordingError if the test
+    itself is broken.
     """
     space: Any = request.designation.drifts[request.drift].value
     evaluator = _evaluator(request, space)
@@ -104,10 +104,10 @@ def along(request: Request, ray: Ray) -> Curve:
 
 
 def explore(evaluator: Evaluator, together: Together, share: float, *, combined: bool = True) -> str:
-    """Fill the curves and combinations of `together`, and return why the search ended early, or an empty text.
+    """Fill the curves and combinations of `together`; return why the search ended early, or an empty text.
 
-    `share` is the error probability for each curve. With several directions, the search first looks for the nearest
-    failing drift, within a share of the budget, because this needs the fewest episodes.
+    `share` is the error probability for each curve. With several directions, the search starts with the nearest failing
+    drift, within a share of the budget, because this takes the fewest episodes.
     """
     curves = together.curves
     several = Combined(evaluator, together) if combined and len(evaluator.space.extents) > 1 else None
@@ -132,9 +132,9 @@ def explore(evaluator: Evaluator, together: Together, share: float, *, combined:
 
 
 def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
-    """Return Sobol indices from the rest of the budget, and why the run ended.
+    """Compute Sobol indices with the rest of the budget; return them and why the run ended.
 
-    `ended` says why the search ended. If the search was interrupted or the nominal drift fails, there are no indices.
+    `ended` is the reason why the search ended. There are no indices if it was interrupted or the nominal drift fails.
     """
     if ended not in ("", "budget"):
         return None, ended
@@ -149,9 +149,9 @@ def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
 def _executed(
     request: Request, evaluator: Evaluator, together: Together, ended: str
 ) -> tuple[Statements | None, str]:
-    """Return the statements that ran only in failures, and why the run ended.
+    """Find the statements that ran only in failures; return them and why the run ended.
 
-    If the search was interrupted, there are no statements.
+    There are none if the search was interrupted.
     """
     if ended == "interrupted" or request.source is None:
         return None, ended
@@ -180,16 +180,13 @@ def _evaluator(request: Request, space: Space) -> Evaluator:
 
 
 def _nominal_fails(evaluator: Evaluator, risk: float) -> bool:
-    """Return whether the guarantee fails at the nominal drift.
-
-    If so, the nominal world differs from the recorded one.
-    """
+    """Return whether the guarantee fails at the nominal drift, which means that the world is not the recorded one."""
     outcomes = evaluator.common(evaluator.space.nominal, COARSE)
     return unlike_recorded(evaluator.guarantee, outcomes, risk)
 
 
 def along_rays(curves: Sequence[Curve], evaluator: Evaluator, share: float) -> None:
-    """Find and confirm the boundary along each ray, with error probability `share` each.
+    """Find and confirm the boundary along each ray, each with error probability `share`.
 
     Raise BudgetSpentError.
     """
@@ -201,6 +198,6 @@ def along_rays(curves: Sequence[Curve], evaluator: Evaluator, share: float) -> N
 
 
 def near_ends(curves: Sequence[Curve], evaluator: Evaluator) -> None:
-    """Show how far the guarantee holds along each ray. Raise BudgetSpentError."""
+    """Show along each ray how far the guarantee holds. Raise BudgetSpentError."""
     for curve in curves:
         hold(curve, evaluator)

@@ -1,7 +1,7 @@
 """Gaussian processes over drifts: regression for the loss, classification for the failure rate.
 
-Both follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the failure
-rate. Both functions are fixed at nominal: the loss at 0, the logit of the failure rate at a constant.
+Both follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the failure rate.
+Their values at nominal are fixed: a loss of 0, and a constant logit of the failure rate.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from pytest_tarl.stressing.coordinates import Vector
 
 Matrix = NDArray[np.float64]
 
-LINEAR, PAIRS = 1.0, 4.0  # prior variances of the slopes, and of the products of two directions
-SINGLE = 0.3  # prior variance of a smooth function of each direction
+LINEAR, PAIRS = 1.0, 4.0  # prior variances of the slopes and of the products of two directions
+SINGLE = 0.3  # prior variance of the smooth function of each direction
 LOCAL = 0.15  # prior variance of local deviations
 LENGTH = 0.3  # length scale of the smooth functions and of the local deviations
 STEPS = 50  # maximum number of Newton steps
-CLOSE = 0.05  # Newton's method stops when no logit changes by more than this
+CLOSE = 0.05  # Newton's method stops when every logit changes by less than this
 LEAP = 4.0  # maximum change of a logit in one Newton step
 JITTER = 1e-8
-BLOCK = 48  # size up to which triangular matrices are inverted at once
+BLOCK = 48  # triangular matrices up to this size are inverted at once
 
 
 def covariance(one: Vector, other: Vector) -> Matrix:
-    """Return the prior covariances between vectors of shape (drifts, ranges); 0 if one of them is nominal."""
+    """Return the prior covariances between vectors of shape (drifts, ranges); they are 0 at nominal."""
     columns = zip(one.T, other.T, strict=True)
     return _summed(one, other, [_smooth(column, against) for column, against in columns])
 
 
 def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
-    """Return a function that multiplies the vectors by a scale factor per range and returns their prior covariances.
+    """Return a function that scales the vectors by a factor per range and returns their prior covariances.
 
-    For each range and factor, the function caches the part of the covariances that depends only on them.
+    The function caches the part of the covariances that depends on a single range and its factor.
     """
 
     @cache
@@ -53,10 +53,10 @@ def scaled_covariances(vectors: Vector) -> Callable[[Vector], Matrix]:
 
 
 def _summed(one: Vector, other: Vector, singles: Sequence[Matrix]) -> Matrix:
-    """Return the covariances of the whole model; `singles` has a matrix of squared-exponential covariances per range.
+    """Return the covariances of the whole model; `singles` has one squared-exponential matrix per range.
 
-    The squared-exponential covariance of several ranges is the product of the covariances of the single ranges. All
-    covariances are conditioned on the value 0 at nominal.
+    The squared-exponential covariance of several ranges is the product of those of the single ranges. All covariances
+    are conditioned on the value 0 at nominal.
     """
     plain, sizes = one @ other.T, np.abs(one) @ np.abs(other).T
     found: Matrix = LINEAR * (plain + sizes) + PAIRS * (plain**2 + sizes**2)
@@ -95,7 +95,7 @@ def _smooth(column: Vector, against: Vector) -> Matrix:
 def inverted(lower: NDArray[np.floating[Any]]) -> Matrix:
     """Return the inverse of a lower triangular matrix of shape (n, n).
 
-    The matrix is split recursively into halves, so that most of the work is fast matrix products.
+    The matrix is split in halves recursively, so that most of the work is done by fast matrix products.
     """
     size = len(lower)
     if size <= BLOCK:
@@ -109,9 +109,9 @@ def inverted(lower: NDArray[np.floating[Any]]) -> Matrix:
 
 
 class LossField:
-    """The mean loss at each drift: a Gaussian process fitted to mean losses of shape (drifts,).
+    """The mean loss at each drift: a Gaussian process, fitted to mean losses of shape (drifts,).
 
-    `errors` holds the covariances between the errors of the mean losses.
+    `errors` holds the covariances of the errors of the mean losses.
     """
 
     def __init__(self, prior: Matrix, losses: Vector, errors: Matrix) -> None:
@@ -125,15 +125,15 @@ class LossField:
         return inverted(self._lower)
 
     def means(self, cross: Matrix) -> Vector:
-        """Return the means at new vectors; `cross` holds their prior covariances with the tried drifts."""
+        """Return the means at new vectors; `cross` holds their prior covariances with the fitted drifts."""
         found: Vector = cross @ self._weights
         return found
 
     def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
         """Return means and standard deviations at new vectors.
 
-        `cross` holds the prior covariances of the new vectors with the tried drifts, and `prior` the prior variances of
-        the new vectors.
+        `cross` holds the prior covariances of the new vectors with the fitted drifts, and `prior` their prior
+        variances.
         """
         explained = self._inverse @ cross.T
         left = prior - (explained**2).sum(axis=0)
@@ -141,7 +141,7 @@ class LossField:
 
 
 class RateField:
-    """The logit of the failure rate at each drift: a Gaussian process fitted to counts of failed episodes."""
+    """The logit of the failure rate at each drift: a Gaussian process, fitted to numbers of failed episodes."""
 
     def __init__(
         self,
@@ -155,7 +155,7 @@ class RateField:
     ) -> None:
         """Find the most probable logits by Newton's method, starting from `start`, the logits of a similar field.
 
-        `luck` holds the covariances that exist only because the drifts ran on the same seeds.
+        `luck` holds the covariances that arise because the drifts ran on the same seeds.
         """
         self._usual, self.scale, self.luck = usual, scale, luck
         matrix, identity = scale * prior, np.eye(len(failed))
@@ -168,8 +168,8 @@ class RateField:
             middle = identity + roots[:, None] * matrix * roots
             step = pull - roots * np.linalg.solve(middle, roots * (matrix @ pull)) - weights
             change = float(np.abs(matrix @ step).max())
-            # The weights are zero at the first step. If logits are given, the first step only computes the weights that
-            # match these logits, so it is not shortened.
+            # At the first step, the weights are zero. If logits are given, this step only computes the matching
+            # weights, so it is not shortened.
             whole = start is not None and number == 0
             weights = weights + (1.0 if whole else min(1.0, LEAP / max(change, 1e-9))) * step
             logits = usual + matrix @ weights
@@ -186,7 +186,7 @@ class RateField:
 
     @cached_property
     def _reduce(self) -> Matrix:
-        """Return the matrix that `moments` multiplies with `cross` to get the reduction of the variances."""
+        """Return the matrix that gives the reduction of the variances when multiplied with `cross`."""
         found: Matrix = inverted(self._lower) * self._roots
         return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-INK = "#1c2333"  # colour of text and lines; its contrast to every background of the figures is at least 7
+INK = "#1c2333"  # colour of text and lines; contrast of at least 7 to every background in the figures
 
 
 def svg_text(x: float, y: float, text: str, anchor: str, *, bold: bool = False) -> str:

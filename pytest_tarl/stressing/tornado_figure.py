@@ -9,12 +9,12 @@ from pytest_tarl.stressing.map_figure import COLOURS
 from pytest_tarl.stressing.mapping import importance, lost
 from pytest_tarl.stressing.svg_text import INK, svg_text
 
-# pixels; END is the space for the value at the end of a bar
+# px; END is the space for the value at the end of a bar
 BAR, GAP, LABEL, WIDTH, END = 22, 12, 150, 640, 60
 
 
 def tornado(stress: Stress) -> str:
-    """Return the chart with a bar for each end of each range, the most important range on top.
+    """Return the chart: a bar for each end of each range, the most important range on top.
 
     Return an empty text if there are fewer than two ranges.
     """

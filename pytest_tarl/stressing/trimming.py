@@ -1,8 +1,8 @@
-"""Move single directions of a drift at a jump of the margin towards nominal.
+"""Move single directions of a drift towards nominal, where the margin jumps.
 
-At a jump, the guarantee fails clearly at a drift and holds a little nearer to nominal on the same ray. A smooth model
-errs on both sides of the jump. Only some directions cause the jump. The values of the other directions may move nearer
-to nominal without making the guarantee hold.
+At a jump, the guarantee clearly fails at a drift and holds slightly nearer to nominal on the same ray. A smooth model
+is wrong on both sides of the jump. Only some of the drift's directions cause the jump; the others can move nearer to
+nominal, and the guarantee still fails.
 """
 
 from __future__ import annotations
@@ -16,18 +16,17 @@ from pytest_tarl.stressing.prediction import Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import weighted
 
-# a drift is at a jump if its failure rate, or the excess of its loss over the tolerated loss, is at least this multiple
-# of what fresh episodes can show
+# a drift is at a jump if its failure rate or excess loss is at least this many times what fresh episodes can detect
 STEEP = 2.0
-LOST = 0.25  # minimum excess of the loss over the tolerated loss at a jump, in units of the tolerated loss
-SMALL = 0.9  # weight of the first step; if the guarantee holds there, the direction causes the jump
+LOST = 0.25  # minimum excess loss at a jump, in units of the tolerated loss
+SMALL = 0.9  # weight of the first step; if the guarantee then holds, the direction causes the jump
 HALVINGS = 2  # number of bisections between a weight that fails and one that holds
 
 
 def broken(point: Point, evaluator: Evaluator, shown: Shown) -> Part | None:
-    """Return the part of the guarantee that a drift breaks so clearly that it may be at a jump, or None.
+    """Return the part of the guarantee that a drift breaks by so much that it may be at a jump, or None.
 
-    `shown` is what fresh episodes can show.
+    `shown` is what fresh episodes can detect.
     """
     counts = [one for one in evaluator.counts if one.point == point]
     failed, episodes = sum(one.failed for one in counts), sum(one.episodes for one in counts)
@@ -42,9 +41,9 @@ def broken(point: Point, evaluator: Evaluator, shown: Shown) -> Part | None:
 
 
 def trimmed(point: Point, evaluator: Evaluator, tried: list[Point]) -> Iterator[Point]:
-    """Yield failing drifts, each nearer to nominal than the one before in one direction; options do not change.
+    """Yield failing drifts, each nearer to nominal in one direction than the previous one; options do not change.
 
-    Append all drifts at which episodes run to `tried`. Raise BudgetSpentError.
+    Append every drift that gets episodes to `tried`. Raise BudgetSpentError.
     """
     space, now = evaluator.space, dict(point)
     ranges = [
@@ -68,7 +67,7 @@ def trimmed(point: Point, evaluator: Evaluator, tried: list[Point]) -> Iterator[
 
 
 def _fails(point: Point, evaluator: Evaluator, tried: list[Point]) -> bool:
-    """Return whether a few episodes show a failure; run more only if the first suggest it."""
+    """Return whether a few episodes show a failure; run more only if the first ones suggest it."""
     found = evaluator.examine(point, SIZES[0])
     tried.append(point)
     return found.failing and evaluator.examine(point, SIZES[1]).result == "fails"

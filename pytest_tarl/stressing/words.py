@@ -19,9 +19,9 @@ from pytest_tarl.stressing.findings import (
 )
 from pytest_tarl.stressing.rays import Ray
 
-MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
+MOST_SHOWN = 5  # maximum number of combinations, and of statements, to show
 SURE = f"{100 * CONFIDENCE:.3g} %"
-ROUNDING = 1e-9  # two places on a ray count as the same if they differ by at most this
+ROUNDING = 1e-9  # two positions on a ray count as equal if they differ by at most this
 
 ENDED = {
     "budget": "The budget of {budget} did not suffice for the whole search: raise --tarl-stress-budget.",
@@ -30,7 +30,7 @@ ENDED = {
 
 
 def lines(stress: Stress) -> Iterator[str]:
-    """Yield the lines of the terminal report."""
+    """Yield the lines for the terminal."""
     yield f"{stress.test}[{stress.drift}]: stress, {stress.episodes} episodes"
     yield f"  guarantee  {guarantee_words(stress)}"
     if stress.ended == "nominal":
@@ -50,7 +50,7 @@ def lines(stress: Stress) -> Iterator[str]:
 
 
 def ended_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences about why the run ended early and whether the run is reproducible."""
+    """Yield sentences on why the run ended early and whether it can be reproduced."""
     if stress.ended in ENDED:
         yield ENDED[stress.ended].format(budget=budget_words(stress), episodes=stress.episodes)
     if stress.seconds is not None:
@@ -66,7 +66,7 @@ def budget_words(stress: Stress) -> str:
 
 
 def guarantee_words(stress: Stress) -> str:
-    """Return a sentence that states the guarantee."""
+    """Return the guarantee as a sentence."""
     given = stress.guarantee
     return (
         f"At least {100 * given.rate:.4g} % of the episodes pass, and the mean reward is at most "
@@ -75,7 +75,7 @@ def guarantee_words(stress: Stress) -> str:
 
 
 def nominal_words() -> str:
-    """Return the advice for a guarantee that fails at the nominal values."""
+    """Return the advice for a guarantee that already fails at the nominal values."""
     return (
         "The guarantee already fails at the nominal values, so the nominal world is not the recorded one: correct the "
         "nominal values, or record again with `pytest --tarl-record`."
@@ -94,7 +94,7 @@ def directions(stress: Stress) -> Iterator[tuple[str, list[str]]]:
 
 
 def together(stress: Stress) -> Iterator[str]:
-    """Yield sentences about failing combinations, nearest first, without those that contain a nearer one."""
+    """Yield sentences on failing combinations, nearest first, without those that contain a nearer one."""
     found, shown = stress.combinations, _innermost(stress)[:MOST_SHOWN]
     for one in shown:
         where = of_point(stress.space, one.point)
@@ -110,7 +110,7 @@ def together(stress: Stress) -> Iterator[str]:
 
 
 def _left_out(count: int, noun: str, which: str = "") -> str:
-    """Return a sentence about results that only the JSON result lists."""
+    """Return a sentence on results that only the JSON result lists."""
     told = f"{noun}{which} is" if count == 1 else f"{noun}s{which} are"
     return f"{count} more {told} in the JSON result."
 
@@ -125,7 +125,7 @@ def _innermost(stress: Stress) -> list[Failure]:
 
 
 def _alone(stress: Stress, one: Failure) -> str:
-    """Return the remark that the guarantee seems to hold under each change alone, or ""."""
+    """Return the remark that the guarantee seems to hold under each change alone, or an empty text."""
     for curve in stress.curves:
         (name,) = curve.ray.names
         extent = stress.space.extents[name]
@@ -138,7 +138,7 @@ def _alone(stress: Stress, one: Failure) -> str:
 
 
 def sobol_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences about the Sobol indices, the most important direction first."""
+    """Yield sentences on the Sobol indices, the most important direction first."""
     if stress.sobol is None:
         return
     shares = sorted(stress.sobol.shares, key=lambda one: -one.total)
@@ -162,7 +162,7 @@ def sobol_words(stress: Stress) -> Iterator[str]:
 
 
 def statement_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences about the statements that ran only in failures."""
+    """Yield sentences on the statements that ran only in failures."""
     found = stress.statements
     if found is None:
         return
@@ -178,7 +178,7 @@ def statement_words(stress: Stress) -> Iterator[str]:
 
 
 def repair_lines(stress: Stress) -> Iterator[str]:
-    """Yield sentences about the searches for repairs."""
+    """Yield sentences on the repair searches."""
     for one in stress.repairs or ():
         yield f"{one.region}: {one.told}"
         for moved in one.moved:
@@ -197,7 +197,7 @@ def repair_lines(stress: Stress) -> Iterator[str]:
 
 
 def broken_promises(stress: Stress) -> list[str]:
-    """Return a sentence for each confirmed failure inside `must_hold`, single directions before combinations."""
+    """Return a sentence for each confirmed failure inside `must_hold`, single directions first."""
     alone = [one for one in confirmed(stress.curves) if _promised(stress, one)]
     together = [one for one in _innermost(stress) if _promised(stress, one)]
     return [
@@ -210,7 +210,7 @@ def broken_promises(stress: Stress) -> list[str]:
 
 
 def undecided_promises(stress: Stress) -> list[str]:
-    """Return a sentence for each direction that seems to fail inside `must_hold` although no failure was confirmed."""
+    """Return a sentence for each direction that seems to fail inside `must_hold`, without a confirmed failure."""
     found = []
     for curve in stress.curves:
         places = [t for t in curve.failing if _promised(stress, failure(stress.space, curve.ray.point(t)))]
@@ -223,7 +223,7 @@ def undecided_promises(stress: Stress) -> list[str]:
 
 
 def _but_must_hold(stress: Stress, one: Failure) -> str:
-    """Return where a failure along one direction is, and the values that `must_hold` declares for the direction."""
+    """Return where a failure along one direction is, and which values `must_hold` declares for it."""
     (name,) = one.names
     told, limits = of_point(stress.space, one.point), stress.must_hold[name]
     if isinstance(extent := stress.space.extents[name], Choice):
@@ -232,7 +232,7 @@ def _but_must_hold(stress: Stress, one: Failure) -> str:
 
 
 def _promised(stress: Stress, one: Failure) -> bool:
-    """Return whether every direction of a failure is inside its `must_hold`, which defaults to the nominal value."""
+    """Return whether every direction of a failure is inside its `must_hold` (by default, the nominal value)."""
     return all(_inside(stress, name, one.point[name]) for name in one.names)
 
 
@@ -247,7 +247,7 @@ def _inside(stress: Stress, name: str, number: float) -> bool:
 
 
 def shown(extent: Span | Choice, number: float) -> str:
-    """Return the text of a direction's value."""
+    """Return a direction's value as text."""
     value = value_of(extent, number)
     return f"{value:.3g}" if isinstance(value, float) else repr(value)
 
@@ -265,7 +265,7 @@ def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
 
 
 def _held(name: str, curves: list[Curve]) -> list[str]:
-    """Return a sentence on the range's sides without a boundary: up to where the guarantee holds."""
+    """Return a sentence on the sides of a range that have no boundary: how far the guarantee holds there."""
     limits = [
         f"{name} {_sign(curve.ray)} {_number(curve.ray, curve.held)}"
         for curve in curves
@@ -279,7 +279,7 @@ def _sign(ray: Ray) -> str:
 
 
 def _side(name: str, curve: Curve) -> str:
-    """Return a sentence about one side of a range."""
+    """Return a sentence on one side of a range."""
     ray, boundary = curve.ray, curve.boundary
     sign = _sign(ray)
     if boundary is not None:
@@ -329,5 +329,5 @@ def of_point(space: Space, point: Point) -> str:
 
 
 def point_values(stress: Stress, point: Point) -> dict[str, Any]:
-    """Return the value of each direction: a number of a range, or an option."""
+    """Return the value of each direction: a number from a range, or an option."""
     return {name: value_of(extent, point[name]) for name, extent in stress.space.extents.items()}
