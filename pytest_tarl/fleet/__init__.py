@@ -1,1 +1,1 @@
-"""Missions of many robots: recordings and logs merged into one recording."""
+"""Collect and judge the missions of many robots."""

@@ -29,16 +29,16 @@ class Bagged:
 
 
 def is_bag(path: Path) -> bool:
-    """Return whether a file or folder is named like a bag."""
+    """Return whether the name of a file or folder is that of a bag."""
     return path.is_dir() or path.name.endswith(ENDINGS)
 
 
 def identified(path: Path, fixture: Fixture) -> Bagged:
-    """Return the mission of a bag, without replaying it.
+    """Return the ID and start of a bag's mission, without replaying the bag.
 
-    The ID is a hash of the times, topics and contents of the messages: it does not depend on the container, the
-    compression or the nodes through which the bag is replayed. Raise LogError if the bag cannot be read to its end, or
-    does not fit the recording.
+    The ID is a hash of the messages' times, topics and contents. It does not depend on the container, the compression
+    or the nodes that replay the bag. Raise LogError if the bag cannot be read to its end, or does not fit the
+    recording.
     """
     bag = opened(path)
     if why := misfit(bag, fixture):
@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    # a truncated bag has no mission ID, because the complete bag would have another one
+    # a truncated bag has no mission ID, because the complete bag would have a different one
     if bag.notes:
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore the index of the "

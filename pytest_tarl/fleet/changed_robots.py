@@ -1,13 +1,19 @@
-"""Find the robots whose world differs from the recorded one, and the time at which the difference began.
+"""Find the robots whose world differs from the recorded one, and when the difference began.
 
-Each robot has its own monitor, as in `tarl watch`. An e-value measures evidence against a hypothesis: its expectation
-is at most 1 if the hypothesis is true. For each process of a monitor there are two e-values. The first is the last
-value of the process. It is an e-value if the number of missions does not depend on their results, and it is large if
-the robot still differs. The second is the adjusted running maximum (monitoring/e_bh.py). It is an e-value at any time,
-and it is large if the robot differed at some time. The mean of the two is averaged over the processes, with weights
-proportional to their shares of α; the result is an e-value, too. e-BH over the robots keeps the expected share of false
-reports at or below q, even if robots are dependent; therefore all monitors may use the same recording. In the tests of
-bounds, the expected share may be larger than q by the probability that a recorded bound is wrong.
+Each robot has its own monitor, as in `tarl watch`. Evidence against a hypothesis is measured by e-values: an e-value is
+at most 1 on average if the hypothesis is true.
+
+Each process of a monitor has two e-values:
+
+- Its last value. It is large if the robot still differs. It is an e-value if the number of missions does not depend on
+  their results.
+- Its adjusted running maximum (monitoring/e_bh.py). It is large if the robot differed at any time. It is an e-value at
+  any time.
+
+The mean of the two is averaged over the processes, weighted by their shares of α; the result is again an e-value. e-BH
+over the robots keeps the expected share of false reports at or below q, even if robots depend on each other. All
+monitors may therefore use the same recording. For bounds, the expected share may be larger than q by the probability
+that a recorded bound is wrong.
 """
 
 from __future__ import annotations
@@ -33,9 +39,9 @@ PORTION = 50_000  # number of missions judged in one task
 
 @dataclass(frozen=True)
 class Robot:
-    """The evidence on one robot (log2 of e-values): a different world, or a violated bound.
+    """The evidence on one robot, as log2 of e-values: that its world differs, and that it violates a bound.
 
-    `status` is None if neither e-value reaches 1/q, the minimum for e-BH to reject a hypothesis.
+    `status` is None if both e-values are below 1/q, which is the least that e-BH needs to reject a hypothesis.
     """
 
     name: str
@@ -48,7 +54,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Robots:
-    """All robots by name, and those that e-BH reports at the false discovery rate `q`."""
+    """All robots by name, and those that e-BH reports at false discovery rate `q`."""
 
     q: float
     every: tuple[Robot, ...]
@@ -57,7 +63,7 @@ class Robots:
 
 
 def judged(database: Database, first: Monitor, scores: Scores, engine: Engine, q: float) -> Robots:
-    """Judge each robot's missions in order of time, starting from the monitor `first`."""
+    """Judge each robot's missions in order of time, starting from a copy of the monitor `first`."""
     rows = database.columns(
         "SELECT any_value(robot) AS robot, max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ends"
     )
@@ -98,11 +104,11 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
 
 
 def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
-    """Judge robots, whose missions are numbered from `ends[n - 1]` to `ends[n]` - 1; return them in order.
+    """Judge robots and return them in order; the missions of robot n are `ends[n - 1]` to `ends[n]` - 1.
 
     `ends` has shape (robots,).
 
-    Robots with enough evidence for a status are judged a second time to find their onsets.
+    If a robot has enough evidence for a status, its missions are judged a second time to find the onset.
     """
     found: dict[int, Robot] = {}
     for some in side_by_side.watched(first, scores, ends, onsets=False):
@@ -125,9 +131,9 @@ def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], 
 
 
 def portions(ends: Ints) -> Iterator[Ints]:
-    """Divide robots into portions of about PORTION missions, and yield the `ends` of each portion.
+    """Divide robots into portions of about PORTION missions; yield the `ends` of each portion.
 
-    The missions of robot n end before number `ends[n]`; `ends` has shape (robots,).
+    The missions of robot n end before mission `ends[n]`; `ends` has shape (robots,).
     """
     which = (ends - 1) // PORTION
     for one in np.unique(which).tolist():
@@ -135,15 +141,15 @@ def portions(ends: Ints) -> Iterator[Ints]:
 
 
 def fresh(first: Monitor) -> Monitor:
-    """Return a new monitor of the same recording, without missions."""
+    """Return a new monitor of the same recording, with no missions."""
     processes = restarts.begun(first.processes.threshold)
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
 
 
 def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, float]:
-    """Return the evidence that missions differ, and that they violate a bound, as log2 of e-values.
+    """Return, as log2 of e-values, the evidence that missions differ and that they violate a bound.
 
-    `peak` and `latest`, of shape (processes,), are log2 of the largest and of the last evidence of each process.
+    `peak` and `latest`, of shape (processes,), are log2 of each process's largest and last evidence.
     """
     stated = len(monitor.bounds)
     each = np.logaddexp2(e_bh.adjusted(peak), latest) - 1.0
@@ -154,7 +160,7 @@ def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, flo
 
 
 def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: object) -> float:
-    """Return log2 of the weighted average of e-values; -1 if there are none."""
+    """Return log2 of the weighted mean of e-values; -1 if there are none."""
     if not log_evidence.size:
         return -1.0
     share = np.asarray(weight, np.float64)
@@ -163,6 +169,6 @@ def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: ob
 
 
 def lower(found: Status) -> Evidence | None:
-    """Return the strongest evidence against a bound, or None if none can be tested."""
+    """Return the strongest evidence against a bound, or None if no bound can be tested."""
     told = [evidence for _, evidence in found.bounds if evidence is not None]
     return max(told, key=lambda evidence: evidence.highest, default=None)

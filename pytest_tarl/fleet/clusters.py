@@ -1,9 +1,9 @@
-"""Robots with similar drifts: clusters of the residual maps of the robots named as drifted.
+"""Cluster the robots reported as drifted by the similarity of their residual maps.
 
-A residual map holds the mean residual of a visit to each cell. The distance between two robots is the largest
-difference between their maps in a common cell. It is measured in standard errors of the difference, so noise alone does
-not separate robots. Robots are joined by complete linkage as long as no distance within a cluster is significant. The
-significance is corrected for the numbers of cells and pairs (Bonferroni).
+A residual map has the mean residual of a visit to each cell. The distance of two robots is the largest difference
+between their maps in a cell that both visited, in standard errors of the difference. Noise alone therefore does not
+separate robots. Complete linkage joins robots as long as no distance within a cluster is significant, with a Bonferroni
+correction for the numbers of cells and pairs.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
 
-# maximum number of robots to compare; those with the most evidence are chosen
+# maximum number of robots to compare: those with the most evidence
 MOST = 300
 
 
 @dataclass(frozen=True)
 class Cluster:
-    """Robots with similar maps, their common cells, and the mean residuals."""
+    """Robots with similar maps, the cells in which they stand out, and the mean residuals."""
 
     robots: tuple[str, ...]
     cells: tuple[Cell, ...]
@@ -38,7 +38,7 @@ class Cluster:
 
 @dataclass(frozen=True)
 class Clusters:
-    """The clusters (largest first), robots without significant cells, number not compared."""
+    """The clusters, largest first; the robots without significant cells; and how many were not compared."""
 
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
@@ -49,7 +49,7 @@ class Clusters:
 def clustered(
     database: Database, where: Store, engine: Engine, fixture: Fixture, robots: Robots, alpha: float
 ) -> Clusters:
-    """Return the clusters of the robots that were reported as drifted."""
+    """Return the clusters of the robots reported as drifted."""
     named = {one.name: one for one in (*robots.below, *robots.drifted)}
     some = sorted(named.values(), key=lambda one: (-max(one.world, one.bound), one.name))
     if not some:
@@ -64,9 +64,9 @@ def of(
 ) -> Clusters:
     """Return the clusters of robots with these residual maps.
 
-    `recorded`, of shape (cells,), is the variance of the mean residual of the recording in each cell.
+    `recorded`, of shape (cells,), is the variance of the recording's mean residual in each cell.
     """
-    # sorted, because the order affects the last bits of sums
+    # a fixed order, because the order affects the last bits of sums
     ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))
@@ -77,9 +77,9 @@ def of(
 
 
 def distances(maps: Sequence[ResidualMap]) -> Floats:
-    """Return the distance of each pair of maps, shape (maps, maps).
+    """Return the distance between each pair of maps, shape (maps, maps).
 
-    The distance is infinite for maps without a common cell and on the diagonal.
+    It is infinite on the diagonal, and for maps without a common cell.
     """
     mean = np.array([one.mean for one in maps])
     variance = np.array([one.variance for one in maps])
@@ -95,7 +95,7 @@ def distances(maps: Sequence[ResidualMap]) -> Floats:
 
 
 def _linked(distance: Floats, cells: int, alpha: float) -> list[list[int]]:
-    """Return clusters by complete linkage; a cluster lists rows of `distance`."""
+    """Return clusters by complete linkage, each as a list of rows of `distance`."""
     groups = [[n] for n in range(len(distance))]
     pairs = max(1, len(groups) * (len(groups) - 1) // 2)
     apart = distance.copy()
@@ -114,7 +114,7 @@ def _linked(distance: Floats, cells: int, alpha: float) -> list[list[int]]:
 
 
 def _cluster(maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float) -> Cluster:
-    """Return the cluster of some maps; residuals are averaged with weights 1 / variance."""
+    """Return a cluster of maps; residuals are averaged with weights 1 / variance."""
     mean = np.array([one.mean for one in maps])
     weight = 1.0 / np.maximum(np.array([one.variance for one in maps]), np.finfo(float).tiny)
     weight[np.isnan(mean)] = 0.0
@@ -130,7 +130,7 @@ def _cluster(maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell
 
 
 def _standing_out(mean: Floats, variance: Floats, alpha: float) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Return the cells with a significant mean residual, corrected for their number."""
+    """Return the cells with a significant mean residual, corrected for the number of cells."""
     with np.errstate(divide="ignore", invalid="ignore"):
         size = np.where(mean == 0.0, 0.0, np.abs(mean) / np.sqrt(variance))
     known = ~np.isnan(size)
@@ -139,5 +139,5 @@ def _standing_out(mean: Floats, variance: Floats, alpha: float) -> np.ndarray[tu
 
 
 def _p_value(size: float) -> float:
-    """Return the two-sided p-value of a difference in standard errors (normal)."""
+    """Return the two-sided p-value of a difference given in standard errors (normal distribution)."""
     return erfc(size / sqrt(2.0))

@@ -1,19 +1,19 @@
-"""Variance components: how much of the variance of missions lies between versions, sites, seasons and robots.
+"""Variance components: how much of the missions' variance comes from versions, sites, seasons and robots.
 
-The model of a mission's reward y is a sum: the effects of its version, site and season, the effect of its robot, and a
-residual. The effects of versions, sites and seasons are fixed numbers, one for each level. The effects of robots are
-random, with variance σ_r².
+The reward y of a mission is modelled as a sum of the effects of its version, site, season and robot, and a residual.
+The effects of versions, sites and seasons are fixed, one per level. The effects of robots are random, with variance
+σ_r².
 
-- σ_e² (residual) and σ_r² are estimated by fitting constants (Henderson 1953, "Estimation of variance and covariance
-  components", Biometrics 9:226-252, method 3). The residual sums of squares with and without effects of robots are set
-  equal to their expectations, which gives one equation for each variance. The method assumes no distribution.
+- The variances σ_e² (residual) and σ_r² are estimated by fitting constants (Henderson 1953, "Estimation of variance and
+  covariance components", Biometrics 9:226-252, method 3): the residual sums of squares with and without robot effects
+  are set equal to their expectations, which gives two equations. No distribution is assumed.
 - The effects are estimated by generalised least squares with these variances (Fuller & Battese 1973, JASA 68:626-632).
 - The component of a factor is the variance of its effects over missions (a finite population; Gelman 2005, Annals of
-  Statistics 33:1-53), Σ share·(effect - mean)², minus what the errors of the effects add to it, tr(M·Cov).
-- Intervals come from a bootstrap over robots (Davison & Hinkley 1997, section 3.8), since missions of one robot are
-  alike.
+  Statistics 33:1-53), Σ share·(effect - mean)², minus the contribution of the effects' estimation errors, tr(M·Cov).
+- Intervals come from a bootstrap over robots, because missions of one robot are alike (Davison & Hinkley 1997, section
+  3.8).
 
-All sums come from one row for each robot and combination of levels.
+All sums are computed from one row per robot and combination of levels.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ import numpy as np
 from pytest_tarl.learning.tables import Floats, Ints
 
 REPLICATES = 200
-FEWEST = 30  # minimum number of robots for which an interval is given
-RANDOM = 2  # number of random components: between robots, and residual (between missions)
+FEWEST = 30  # an interval is given only for at least this many robots
+RANDOM = 2  # number of random components: robots, and the residual
 CONFOUNDED = (
-    # maximum share of an estimable contrast outside the row space of the design
+    # a contrast is estimable if at most this share of it lies outside the row space of the design
     1e-6
 )
 SINGULAR = 1e-9  # eigenvalues below this share of the largest count as 0
@@ -40,7 +40,7 @@ SINGULAR = 1e-9  # eigenvalues below this share of the largest count as 0
 class Totals:
     """Sums over the missions of each robot and combination of levels; `levels` has shape (rows, factors).
 
-    `squares` holds the sum of squared rewards by robot.
+    `squares` is the sum of squared rewards by robot.
     """
 
     robot: Ints
@@ -53,21 +53,21 @@ class Totals:
 
 @dataclass(frozen=True)
 class Component:
-    """A variance and its two-sided interval; NaN if it cannot be determined."""
+    """A variance and its two-sided interval; NaN if it cannot be estimated."""
 
     name: str
     variance: float
     low: float
     high: float
     levels: int
-    # effect of each level, relative to the mean over missions; empty for robots and residuals
+    # effect of each level, relative to the mean over missions; empty for robots and the residual
     effects: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class _Fit:
     variances: Floats  # variance of each factor, of robots and of residuals
-    noise: Floats  # share of each entry of `variances` that is estimation error
+    noise: Floats  # share of each of `variances` that is estimation error
     effects: Floats  # effects of all levels of all factors
 
 
@@ -96,14 +96,13 @@ def components(
 
 
 def _interval(found: _Fit, replicates: Floats, confidence: float) -> tuple[Floats, Floats]:
-    """Return the ends of the intervals from replicates, shape (replicates, components).
+    """Return the ends of the intervals from bootstrap replicates, shape (replicates, components).
 
-    A replicate is a sample of robots drawn with replacement. The effects estimated from it contain the errors of the
-    original sample and the errors of the replicate; the intervals subtract both. A replicate has fewer distinct robots
-    at a site, which lowers the variance between them. The replicates of the random components are therefore scaled so
-    that their mean is the estimate, and their interval is a basic bootstrap interval of the logarithm. If some
-    replicates are not positive, the interval instead spans the percentiles of the original, the shifted and the scaled
-    replicates.
+    A replicate is a sample of robots, drawn with replacement. Its estimates contain the errors of the original sample
+    and of the replicate; the intervals subtract both. A replicate has fewer distinct robots per site, so the variance
+    between them is smaller. The replicates of the random components are therefore scaled to have the estimate as their
+    mean; the interval is a basic bootstrap interval of the logarithm. If some replicates are not positive, the interval
+    spans the percentiles of the original, shifted and scaled replicates instead.
     """
     value, mean = found.variances, np.mean(replicates, axis=0)
     random = np.arange(value.size) >= value.size - RANDOM
@@ -129,7 +128,7 @@ def _resampled(robots: int, rng: np.random.Generator) -> list[Floats]:
 
 
 class _Design:
-    """The sums of squares and products of a data set with weighted robots."""
+    """The sums of squares and products of the data, with a weight per robot."""
 
     def __init__(self, totals: Totals) -> None:
         self.totals = totals
@@ -177,7 +176,7 @@ class _Design:
         )
 
     def _products(self, weights: Floats) -> Floats:
-        """Return the number of missions at each pair of levels, shape (levels, levels)."""
+        """Return the number of missions for each pair of levels, shape (levels, levels)."""
         counts = self.totals.count * weights[self.totals.robot]
         found = np.zeros(self.width**2)
         for one in self.columns.T:

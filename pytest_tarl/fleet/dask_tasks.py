@@ -1,10 +1,10 @@
-"""Run tasks with Dask, on threads of this process or on a cluster.
+"""Run tasks with Dask, in threads of this process or on a cluster.
 
-Tasks are pure functions of their arguments, and results keep the order of the tasks. A result therefore does not depend
-on the number of workers. If a worker dies, the scheduler runs its tasks on other workers. Workers read the files that a
-task names. Without a cluster, tasks run in threads, or directly if there is a single worker. Each task uses one thread
-for linear algebra: more threads would compete with other tasks and change the order of sums, and thus the last bits of
-a result.
+Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so a result does not
+depend on the number of workers. Workers read the files that a task names. If a worker dies, the scheduler runs its
+tasks elsewhere. Without a cluster, tasks run in threads, or directly if there is only one worker. Each task uses one
+thread for linear algebra: more threads would compete with other tasks and change the order of sums, and with it the
+last bits of a result.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from pytest_tarl.extras import install_command
 
 REACHED = 10  # maximum time to wait for the scheduler (s)
 RETRIES = 3  # maximum number of retries of a task whose worker dies
-AHEAD = 2  # maximum number of waiting and running tasks per cluster thread; bounds the memory
-WINDOW = 8  # number of tasks passed to Dask at a time, per thread of this process
+AHEAD = 2  # maximum number of waiting and running tasks per cluster thread; limits memory
+WINDOW = 8  # number of tasks passed to Dask at a time per thread of this process
 
 Result = TypeVar("Result")
 
@@ -44,7 +44,7 @@ class Engine(Protocol):
 
 @dataclass(frozen=True)
 class Local:
-    """Dask's scheduler in this process; limits the running tasks, and so the memory."""
+    """Dask's scheduler in this process; it limits the number of running tasks, to limit memory."""
 
     workers: int
     threads: ThreadPoolExecutor | None  # None with one worker
@@ -53,7 +53,7 @@ class Local:
         """Yield the results in order."""
         rest = iter(tasks)
         while window := [partial(function, *one) for one in islice(rest, WINDOW * self.workers)]:
-            # `partial` hides the arguments from Dask, which would search them for names of tasks
+            # `partial` hides the arguments from Dask, which would otherwise search them for task names
             yield from self._got({f"tarl-{number}": (one,) for number, one in enumerate(window)})
 
     def _got(self, graph: dict[str, tuple[Callable[[], Any]]]) -> list[Any]:
@@ -88,14 +88,14 @@ class Cluster:
 
     def _submitted(self, function: Callable[..., Result], arguments: tuple[Any, ...]) -> Future[Result]:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # Dask warns about large arguments of tasks
+            warnings.simplefilter("ignore", UserWarning)  # Dask warns about tasks with large arguments
             return self.executor.submit(_by_one_thread, function, *arguments)
 
 
 def _by_one_thread(function: Callable[..., Result], *arguments: Any) -> Result:
     """Run a task on a worker of a cluster with one BLAS thread.
 
-    The limit is not lifted afterwards, because other threads of the worker may be running tasks.
+    The limit stays in force afterwards, because other threads of the worker may be running tasks.
     """
     threadpool_limits(1, user_api="blas")
     return function(*arguments)
@@ -131,7 +131,7 @@ def local(workers: int) -> Iterator[Engine]:
 
 @contextmanager
 def cluster(address: str) -> Iterator[Engine]:
-    """Run tasks on the workers of a Dask cluster, on which this version of tarl is installed.
+    """Run tasks on the workers of a Dask cluster that has the same version of tarl.
 
     Raise SettingsError if no scheduler answers, or if it has no workers.
     """

@@ -1,8 +1,8 @@
-"""Load the selected missions into an in-memory DuckDB, without duplicates, sorted by robot, time and mission ID.
+"""Load the selected missions into an in-memory DuckDB, deduplicated, sorted by robot, time and mission ID.
 
-The database has one row for each mission; the rows of cells stay in their files (partitions.py). DuckDB only counts
-integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order. To the last bit, results
-therefore do not depend on the files, partitions or threads.
+The database has one row per mission; the rows of cells stay in their files (partitions.py). DuckDB only counts integers
+and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order. Results are therefore identical to
+the last bit, however the data is split into files, partitions or threads.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pytest_tarl.fleet.data_folder import Store
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.partitions import Wanted
 
-MEMORY = "1GB"  # memory limit; DuckDB moves rows that exceed it to the folder SPILLED
+MEMORY = "1GB"  # memory limit; DuckDB moves further rows to the folder SPILLED
 SPILLED = Path(".tarl/fleet")
 BY = {
     "version": "version",
@@ -35,7 +35,7 @@ BY = {
     "month": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%Y-%m')",  # UTC
     "week": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%G-W%V')",  # ISO 8601, UTC
 }
-# An empty table whose columns include those that files of schema 1 lack.
+# an empty table with the columns that files of schema 1 lack
 EMPTY = "SELECT '' AS repair, MAP {'': 0.0::DOUBLE} AS formulas WHERE false"
 KEY = r"regexp_extract(filename, 'test=[^/]*/version=[^/]*/date=[^/]*/[^/]*$', 0)"
 
@@ -44,14 +44,14 @@ Columns = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Filter:
-    """Select the missions of one robot, or since one day (UTC), or both."""
+    """Select missions by robot, by first day (UTC), or both."""
 
     robot: str = ""
     since: date | None = None
 
 
 class Database:
-    """The selected missions, numbered from 0; `wanted` lists them per file."""
+    """The selected missions, numbered from 0; `wanted` lists them by file."""
 
     def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
@@ -67,7 +67,7 @@ class Database:
         self._connection.execute(statement, list(arguments))
 
     def names(self, query: str) -> list[tuple[Any, ...]]:
-        """Return the rows of a query that has few rows."""
+        """Return the rows of a query with a small result."""
         found: list[tuple[Any, ...]] = self._connection.execute(query).fetchall()
         return found
 
@@ -110,9 +110,9 @@ def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter
 
 @contextmanager
 def _spilled() -> Iterator[str]:
-    """Create a folder for the rows that do not fit into memory, and remove it afterwards.
+    """Create a folder for rows that do not fit into memory; remove it afterwards.
 
-    Each run has its own folder. Parent folders that had to be created are removed, too.
+    Each run has its own folder. Parent folders that it had to create are removed as well.
     """
     made = [one for one in (SPILLED, *SPILLED.parents) if not one.exists()]
     try:
@@ -125,7 +125,7 @@ def _spilled() -> Iterator[str]:
     with folder as name:
         yield name
     for one in made:
-        with suppress(OSError):  # another run uses the folder
+        with suppress(OSError):  # another run is using the folder
             one.rmdir()
 
 

@@ -1,4 +1,4 @@
-"""The files of a data set, their missions, and the recording of each file."""
+"""List the files of a data set, with their missions and recordings."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from pytest_tarl.fleet.schema import PREFIX, READABLE, Origin
 
 @dataclass(frozen=True)
 class Part:
-    """A file of the table `missions`. Its path is relative to the data set."""
+    """A file of the table `missions`; its path is relative to the data set."""
 
     path: str
     origin: Origin
     missions: int
 
     def beside(self, table: str) -> str:
-        """Return the file of another table that holds the same missions."""
+        """Return the file of another table that has the same missions."""
         return f"{table}/{self.path.partition('/')[2]}"
 
 
 def parts(where: Store) -> list[Part]:
-    """Return the files of a data set. Raise FleetError if a file is damaged, incomplete or of another schema."""
+    """Return the files of a data set. Raise FleetError if one is damaged, incomplete or has another schema."""
     found = []
     cells = set(where.files("cells"))
     for path in where.files("missions"):
@@ -41,7 +41,7 @@ def parts(where: Store) -> list[Part]:
         part = Part(path, _origin(where, path, told), about.num_rows)
         if part.beside("cells") not in cells and not where.holds(
             part.beside("cells")
-        ):  # the listing of a store may be out of date, so files may be missing
+        ):  # a store's listing can be outdated, so files may be missing
             raise FleetError(
                 f"{where.shown(part.beside('cells'))} is missing, so {where.shown(path)} cannot be judged: "
                 "restore the missing file, or delete the other one and ingest its logs again."
@@ -92,6 +92,6 @@ def _readable(where: Store, path: str) -> Iterator[None]:
             f"{where.shown(path)} is damaged or cannot be read ({first_line(problem)}): delete it and ingest "
             "its logs again."
         ) from problem
-    # each kind of store raises exceptions of its own, for example of an HTTP client
+    # each kind of store has its own exceptions, for example those of an HTTP client
     except Exception as problem:
         raise FleetError(f"{where.shown(path)} cannot be read ({first_line(problem)}): {ADVICE}") from problem

@@ -1,4 +1,4 @@
-"""How much of the variance of a fleet's missions lies between versions, sites, seasons and robots."""
+"""Decompose the variance of a fleet's missions into versions, sites, seasons and robots."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.seeds import generator
 
 CONFIDENCE = 0.95
 PORTION = 200_000  # number of missions read at a time
-MONTHS = 3  # minimum number of months for months as seasons; with fewer months, weeks are the seasons
+MONTHS = 3  # seasons are months if there are at least this many, and weeks otherwise
 
 CODES = """
     CREATE OR REPLACE TEMP TABLE of_{name} AS
@@ -28,7 +28,7 @@ MISSIONS = """
 
 @dataclass(frozen=True)
 class Decomposition:
-    """The variance components of a mission's reward. `season` is "month" or "week"."""
+    """The variance components of the missions' rewards; `season` is "month" or "week"."""
 
     season: str
     components: tuple[Component, ...]
@@ -63,7 +63,7 @@ def _count(database: Database, column: str) -> int:
 
 
 def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...]) -> Totals:
-    """Return the sums of rewards minus their mean, so that squares lose no digits."""
+    """Return the sums of rewards minus their mean, so that squares keep their precision."""
     joins = " ".join(f"JOIN of_{name} ON of_{name}.name = {column}" for name, column in factors.items())
     codes = ", ".join(f"of_{name}.code AS {name}_code" for name in factors)
     query = MISSIONS.format(codes=codes, joins=joins)

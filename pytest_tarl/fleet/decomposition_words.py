@@ -1,4 +1,4 @@
-"""The decomposition of a fleet's variance as lines of text."""
+"""Describe the decomposition of a fleet's variance in lines of text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.fleet.components import Component
 from pytest_tarl.fleet.decomposition import Decomposition
 
 NAMES = {"mission": "within a robot"}
-EXTREMES = 2  # maximum number of levels named for each factor
+EXTREMES = 2  # maximum number of levels to name for each factor
 
 
 def lines(parts: Decomposition) -> Iterator[str]:

@@ -1,8 +1,7 @@
-"""Find the groups whose world differs from the recorded one, and the time at which the difference began.
+"""Find the groups whose world differs from the recorded one, and when the difference began.
 
-The missions of all robots of a group pass through one monitor in the order of their times, as in `tarl watch`. Some
-changes, such as a season at a site, are too small or too short to be detected in one robot. They can be detected in all
-robots of the group together.
+One monitor per group judges the missions of all its robots in order of time, as in `tarl watch`. Some changes, such as
+a season at a site, are too small or too short to show in a single robot, but show in all robots of the group together.
 """
 
 from __future__ import annotations

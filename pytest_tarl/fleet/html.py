@@ -1,7 +1,7 @@
-"""The page of a fleet: one self-contained HTML file that stays readable with ten thousand robots.
+"""Write the fleet page: one self-contained HTML file that stays readable with ten thousand robots.
 
-The page shares styles with the report page (report/page/page.css). fleet.js draws its map, timeline and table of robots
-from an embedded JSON document. Robots are stored as columns of numbers.
+The page uses the styles of the report page (report/page/page.css). fleet.js draws the map, the timeline and the table
+of robots from embedded JSON, which stores robots as columns of numbers.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from pytest_tarl.report.sensor_regions import Vocabulary
 from pytest_tarl.sensors import Cell
 from tarl_lint.files import write_atomically
 
-# maximum number of groups on the map; differing groups come first, then those with the lowest reward
+# maximum number of groups on the map: those that differ first, then those with the lowest reward
 MOST_GROUPS = 2000
-MOST_CELLS = 12  # maximum number of cells listed for the fleet, and for each robot
-NAMES = 30  # maximum number of links to the robots of a cluster
+MOST_CELLS = 12  # maximum number of cells listed for the fleet and for each robot
+NAMES = 30  # maximum number of robots linked from a cluster
 TAGS = {"helps": "helps", "harms": "harms"}
 
 
@@ -46,7 +46,7 @@ def write(answer: Answer, path: Path) -> None:
 
 
 def render(answer: Answer) -> str:
-    """Return the page's text. Raise TarlError if jinja2 is missing."""
+    """Return the page as HTML. Raise TarlError if jinja2 is missing."""
     environment = html.environment(_asset, ("jinja2",))
     template = environment.get_template("fleet.html")
     vocabulary = Vocabulary(answer.fixture.sensors, answer.cells)
@@ -248,7 +248,7 @@ def _group(one: Group, watched: Robot, changed: bool, vocabulary: Vocabulary) ->
 
 
 def _since(one: Robot) -> tuple[int, float] | None:
-    """Return the mission and time of the onset, by the stronger test."""
+    """Return the mission and time of the onset, from the test with more evidence."""
     if one.status is None:
         return None
     below = lower(one.status)
@@ -277,7 +277,7 @@ def _differing(answer: Answer, one: Robot) -> tuple[Cell, ...]:
 
 
 def _residuals(answer: Answer, found: ResidualMap | None, vocabulary: Vocabulary) -> list[dict[str, Any]]:
-    """Return the cells with the largest residuals in standard errors."""
+    """Return the cells with the largest residuals, in standard errors."""
     if found is None:
         return []
     rows = [

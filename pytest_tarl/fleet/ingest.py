@@ -1,4 +1,4 @@
-"""`tarl ingest`: add the missions of logs and bags to a data set, each once."""
+"""`tarl ingest`: add the missions of logs and bags to a data set, each mission once."""
 
 from __future__ import annotations
 
@@ -34,32 +34,32 @@ class Order:
     logs: tuple[Path, ...]
     to: str
     fixture: Path
-    robot: str  # {folder} and {file} are replaced by the names of each log's folder and file
+    robot: str  # {folder} and {file} are replaced by the names of a log's folder and file
     version: str = "unknown"
     site: str = "unknown"
-    salt: str = ""  # if given, names of robots are replaced by salted hashes
-    repair: str = ""  # the repair that the robots run: its name, or a patch file in .tarl/patches
+    salt: str = ""  # if given, robot names are replaced by salted hashes
+    repair: str = ""  # name of the repair that the robots run, or of a patch file in .tarl/patches
     replay: Replay | None = None  # replays bags
 
 
 @dataclass(frozen=True)
 class Ingested:
-    """The numbers of new and known missions of one log, or why it was not read."""
+    """How many new and known missions a log has, or why it was not read."""
 
     log: Path
     robot: str
     missions: int = 0
     known: int = 0
     problem: str = ""
-    unjudged: int = 0  # number of missions without a verdict on every formula of the recording
+    unjudged: int = 0  # number of missions in which some formula of the recording has no verdict
     notes: tuple[str, ...] = ()  # notes on the replay of a bag
 
 
 def ingest(order: Order) -> Iterator[Ingested]:
-    """Add the missions of all logs; after each log, yield what it added.
+    """Add the missions of all logs; yield the result for each log.
 
-    Logs that do not fit the recording are skipped. Raise FixtureError, FleetError or SettingsError if nothing can be
-    ingested.
+    Logs that do not fit the recording are skipped. Raise FixtureError, FleetError or SettingsError if no log can be
+    added.
     """
     _check(order)
     fixture = load(order.fixture)
@@ -83,7 +83,7 @@ def ingest(order: Order) -> Iterator[Ingested]:
 
 
 def _bag(order: Order, log: Path, robot: str, repair: str, into: _Writer) -> Ingested:
-    """Replay a bag and add its mission, unless it is known. Raise LogError on failure."""
+    """Replay a bag and add its mission, unless it is already known. Raise LogError on failure."""
     found = identified(log, into.fixture)
     time = valid_time(found.time)
     if into.holds(date(time), found.mission, robot):
@@ -102,7 +102,7 @@ def _unjudged(rows: Sequence[Row], fixture: Fixture) -> int:
 
 
 def repair_of(name: str) -> str:
-    """Return the name of a repair; for a patch file, its name without the suffix.
+    """Return the name of a repair; for a patch file, this is its name without the suffix.
 
     Raise SettingsError if there is no such file.
     """
@@ -116,7 +116,7 @@ def repair_of(name: str) -> str:
 
 
 def named(order: Order, log: Path) -> str:
-    """Return the name under which a log's robot is stored."""
+    """Return the robot name to store for a log."""
     name = order.robot.replace(FOLDER, log.resolve().parent.name).replace(FILE, log.stem)
     if not order.salt:
         return name
@@ -124,13 +124,13 @@ def named(order: Order, log: Path) -> str:
 
 
 def keep_origin(to: Store, given: str, repair: str) -> None:
-    """Store the test and drift of an accepted patch, but not the patch."""
+    """Store the test and the drift of an accepted patch, but not the patch itself."""
     if not given.endswith(PATCH):
         return
     try:
         facts = dict(read(Path(given)).facts)
     except RepairError:
-        return  # another program wrote the patch, so only its name is known
+        return  # the patch is not TARL's, so only its name is known
     known = {key: facts[key] for key in REPAIRS_KEEP if key in facts}
     to.write(repair_path(repair), json.dumps(known, ensure_ascii=False, sort_keys=True).encode())
 
@@ -149,9 +149,9 @@ class _Writer:
     waiting: int = 0
 
     def add(self, rows: Sequence[Row]) -> int:
-        """Collect the missions that the data set does not hold yet, and return their number.
+        """Queue the missions that are not in the data set yet; return their number.
 
-        Raise LogError if the data set already has one of the missions under another robot.
+        Raise LogError if one of the missions is already stored for another robot.
         """
         for row in rows:
             self.holds(row.date, row.mission, row.robot)
@@ -168,9 +168,9 @@ class _Writer:
         return added
 
     def holds(self, day: str, mission: int, robot: str) -> bool:
-        """Return whether a robot's mission is already stored or queued for writing.
+        """Return whether a robot's mission is already stored or queued.
 
-        Raise LogError if it belongs to another robot.
+        Raise LogError if the mission belongs to another robot.
         """
         other = self._held(day).get(mission)
         if other is not None and other != robot:
@@ -188,7 +188,7 @@ class _Writer:
         return self.known[day]
 
     def write(self) -> None:
-        """Write the recording, then the queued missions, one set of files per day."""
+        """Write the recording, then the queued missions, with one set of files per day."""
         if self.rows and not self.store.holds(kept := f"recordings/{self.origin.recording}.npz"):
             self.store.write(kept, self.recording)
         for day, rows in sorted(self.rows.items()):

@@ -1,4 +1,4 @@
-"""The answer of `tarl fleet` as JSON, see `fleet.schema.json`."""
+"""Write the answer of `tarl fleet` as JSON (see `fleet.schema.json`)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EVIDENCE = ("world", "bound", "world_since", "bound_since")
 
 
 def text(answer: Answer) -> str:
-    """Return the document; numbers that are not finite are null."""
+    """Return the document; numbers that are not finite become null."""
     return json.dumps(document(answer), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
 

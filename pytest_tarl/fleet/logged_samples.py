@@ -1,4 +1,4 @@
-"""Missions of logs as samples; each mission's ID is computed from its content."""
+"""Convert missions of logs to samples; each mission gets an ID computed from its content."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.logged import Mission, missions, trace
 
-# size of a mission ID (bytes); it is stored in the field of the seed
+# length of a mission ID in bytes; the ID is stored in the seed's field
 BYTES = 8
 
 
 def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:
-    """Yield the start and the statistics of each finished mission with rewards in a log and its rotated files.
+    """Yield start and statistics of each finished mission with rewards, in a log and its rotated files.
 
     The start is in seconds since 1970. A mission that violates a formula of the recording counts as failed. Raise
-    LogError if the log does not belong to the recording or has no rewards.
+    LogError if the log does not fit the recording or has no rewards.
     """
     plan = plan_of(fixture)
     number = {place.id: n for n, place in enumerate(plan.places)}
@@ -42,7 +42,7 @@ def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]
 
 
 def requirements_of(fixture: Fixture) -> Requirements:
-    """Return the formulas of a recording, or no formulas if their parser does not support this Python."""
+    """Return the formulas of a recording; none if the formula parser does not support this Python version."""
     if fixture.sample.judgements is None:
         return NOTHING_REQUIRED
     sensors = (sensor.name for sensor in fixture.sensors if not sensor.categories)
@@ -55,7 +55,7 @@ def requirements_of(fixture: Fixture) -> Requirements:
 
 
 def plan_of(fixture: Fixture) -> Plan:
-    """Return a recording's sites as a plan, without source positions."""
+    """Return a recording's sites as a plan without source positions."""
     places = {place.id: place for one in fixture.lists for place in one.sites}
     number = {site: n for n, site in enumerate(places)}
     members = tuple(tuple(number[place.id] for place in one.sites) for one in fixture.lists)
@@ -63,7 +63,7 @@ def plan_of(fixture: Fixture) -> Plan:
 
 
 def identity(mission: Mission) -> int:
-    """Return the ID of a mission; copies have the same ID."""
+    """Return the ID of a mission; copies of it have the same ID."""
     content = json.dumps(
         [mission.time, mission.passed, mission.failure, [*mission.sites], mission.chunks],
         ensure_ascii=False,

@@ -1,6 +1,6 @@
-"""`tarl merge`: merge several recordings and logs of robots into one recording.
+"""`tarl merge`: merge recordings and logs of several robots into one recording.
 
-Every row of a recording belongs to one episode, so the union of the rows is the recording of all episodes.
+Every row of a recording belongs to one episode, so all rows together are the recording of all episodes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytest_tarl.observing.log_format import MAGIC
 
 @dataclass(frozen=True)
 class Part:
-    """A merged file and its number of episodes; some may also be in earlier files."""
+    """A merged file and its number of episodes, some of which may also be in earlier files."""
 
     path: Path
     episodes: int
@@ -31,11 +31,11 @@ class Part:
 
 
 def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture, tuple[Part, ...]]:
-    """Return the recording of all episodes and missions, and what each file added.
+    """Return the recording of all episodes and missions, and what each file contributed.
 
-    Logs are read with the sensors and statements of the first recording, or of `fixture`. The episodes of `fixture`
-    itself are not added. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot
-    be read or does not fit the others.
+    Logs are read with the sensors and statements of the first recording, or of `fixture` if given. The episodes of
+    `fixture` are not added. Duplicate episodes count once. Raise FixtureError or LogError if a file cannot be read or
+    does not fit the others.
     """
     recordings = {path: load(path) for path in files if not _is_log(path)}
     first = fixture or next(iter(recordings), None)
@@ -58,7 +58,7 @@ def _is_log(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
     except OSError:
-        # an unreadable file is read as a recording, which raises an error with the reason
+        # an unreadable file is then loaded as a recording, which raises an error with the reason
         return False
 
 
@@ -88,7 +88,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
-    """Return the recording of all episodes, without the hashes of modules that differ."""
+    """Return the recording of all episodes; hashes of modules that differ are omitted."""
     worlds = [one.world for one in recordings] or [design.world]
     world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
     return replace(
@@ -104,15 +104,15 @@ def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) ->
 def utilities(whole: Sample) -> tuple[Floats, ...]:
     """Return the utility of each taint list, shape (cells, sites), as the fixed point of SARSA.
 
-    Episodes of several robots have no common order, so the utilities cannot be learned step by step.
+    Episodes of several robots have no common order, so step-by-step learning is not possible.
     """
     return tuple(batch(one, len(whole.cells), one.mean_flow) for one in whole.lists)
 
 
 def _stated(before: Guarantee | None, whole: Sample) -> Guarantee | None:
-    """Return bounds for future episodes, computed from all episodes together, at the confidence of the recording.
+    """Return bounds for future episodes from all episodes together, at the recording's confidence.
 
-    Raise FixtureError if a total lies outside the declared range.
+    Raise FixtureError if a total is outside the declared range.
     """
     if before is None:
         return None
@@ -134,7 +134,7 @@ def _stated(before: Guarantee | None, whole: Sample) -> Guarantee | None:
 
 
 def lines(to: Path, recording: Fixture, parts: Sequence[Part]) -> Iterator[str]:
-    """Yield lines that say what was merged."""
+    """Yield lines that describe what was merged."""
     for one in parts:
         known = f", {one.known} of them already counted" if one.known else ""
         yield f"  {one.path}: {one.episodes} episodes{known}"

@@ -1,6 +1,6 @@
-"""Judge groups of missions, such as those of one version and site: bounds, verdict and region of the difference.
+"""Judge groups of missions (for example of one version and site): bounds, verdict, and where they differ.
 
-The method is that of a comparison of one robot with the recording (learning/drift.py).
+Each group is compared with the recording, just as one robot is (learning/drift.py).
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from pytest_tarl.model import Bound, Region, Verdict
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell, Sensor
 
-MOST = 1000  # maximum number of compared missions of a group; bounds use all missions
+MOST = 1000  # maximum number of missions per group in the comparison; bounds use all missions
 FEWEST = 2  # minimum number of missions for a verdict
 
 
 @dataclass(frozen=True)
 class Judged:
-    """The results of a formula in a group of missions."""
+    """The results of one formula in a group of missions."""
 
     formula: str
     missions: int
@@ -40,7 +40,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Group:
-    """A group of missions, its bounds, and its verdict if it has enough missions."""
+    """A group of missions with its bounds and, if there are enough missions, its verdict."""
 
     values: tuple[str, ...]
     missions: int
@@ -49,7 +49,7 @@ class Group:
     reward: float  # mean total reward of the missions
     success: Bound
     mean: Bound
-    # number of totals outside the declared range; if any, the bound of the mean is approximate
+    # number of totals outside the declared range; if there are any, the bound on the mean is approximate
     outside: int
     compared: int
     verdict: Verdict | None
@@ -69,9 +69,9 @@ def judged(
     tolerance: float | None,
     seed: int = 0,
 ) -> tuple[Group, ...]:
-    """Return all groups in order, with verdicts that are corrected for the number of groups (Holm).
+    """Return all groups in order; verdicts are corrected for the number of groups (Holm).
 
-    `cells` lists the cells of the recording, then all other cells.
+    `cells` are the cells of the recording, followed by all other cells.
     """
     columns = ", ".join((*(f"any_value(by_{one})" for one in by), "count(*)", "count(DISTINCT robot_number)"))
     rows = database.names(f"SELECT {columns} FROM missions GROUP BY group_number ORDER BY group_number")  # noqa: S608 - from BY
@@ -95,7 +95,7 @@ def _tasks(
     tolerance: float | None,
     seed: int,
 ) -> Iterator[tuple[object, ...]]:
-    """Yield the arguments of each group's comparison."""
+    """Yield the arguments for the comparison of each group."""
     recorded = replace(fixture.sample, lists=(), judgements=None)
     for sample, (*values, _, _) in zip(every, rows, strict=True):
         name = "/".join(map(str, values))
@@ -118,7 +118,7 @@ def _violations(database: Database) -> dict[int, tuple[Judged, ...]]:
 
 
 def _group(database: Database, fixture: Fixture, number: int, row: tuple[object, ...]) -> Group:
-    """Return a group without its verdict."""
+    """Return a group, still without a verdict."""
     *values, missions, robots = row
     results = database.columns(
         "SELECT passed, total FROM missions WHERE group_number = ? ORDER BY number", number
@@ -153,7 +153,7 @@ def _compared(
     tolerance: float | None,
     seed: int,
 ) -> tuple[int, Difference | None]:
-    """Return the number of compared missions and their difference; None for too few."""
+    """Return the number of compared missions and their difference, or None if there are too few."""
     if sample.episodes < FEWEST:
         return sample.episodes, None
     return sample.episodes, compare(

@@ -1,4 +1,4 @@
-"""The statistics of missions as Arrow tables and Parquet files."""
+"""Store the statistics of missions as Arrow tables and Parquet files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from pytest_tarl.model import TaintList
 
 @dataclass(frozen=True)
 class Row:
-    """A mission: its robot, site, start and repair, and its statistics.
+    """A mission: robot, site, start, repair and statistics.
 
     The sample has one episode.
     """
@@ -29,7 +29,7 @@ class Row:
     site: str
     time: float
     sample: Sample
-    repair: str = ""  # the repair in the robot's software
+    repair: str = ""  # the repair that the robot's software includes
 
     @property
     def mission(self) -> int:
@@ -48,7 +48,7 @@ def date(time: float) -> str:
 
 
 def files(rows: Sequence[Row], where: Origin, lists: Sequence[TaintList]) -> tuple[str, dict[str, bytes]]:
-    """Return name → content of the files of some missions, by table."""
+    """Return the files of some missions, one per table: name → content."""
     rows = sorted(rows, key=lambda row: (row.robot, row.time, row.mission))
     tables = {"missions": _missions(rows), "cells": _cells(rows), "statements": _statements(rows, lists)}
     about = metadata(where)
@@ -89,7 +89,7 @@ def _missions(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def formulas_of(sample: Sample) -> list[tuple[str, float]]:
-    """Return each formula that was judged in a mission, with its robustness."""
+    """Return the formulas that were judged in a mission, with their robustness."""
     found = sample.judgements
     if found is None:
         return []
@@ -115,7 +115,7 @@ def _cells(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _statements(rows: Sequence[Row], lists: Sequence[TaintList]) -> dict[str, Any]:
-    """Return the visits to statements; the start of a mission is not a visit."""
+    """Return the visits to statements; the start of a mission does not count."""
     names = _Names()
     size: list[int] = []
     owner, place, cells = [], [], []
@@ -154,7 +154,7 @@ def _statements(rows: Sequence[Row], lists: Sequence[TaintList]) -> dict[str, An
 
 
 class _Names:
-    """The cells of some missions, numbered in the order of their first occurrence."""
+    """The cells of some missions, numbered in order of first occurrence."""
 
     def __init__(self) -> None:
         self.number: dict[tuple[int, ...], int] = {}

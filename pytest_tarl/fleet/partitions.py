@@ -1,7 +1,7 @@
-"""The tasks that workers run close to the data: score missions, or read the transitions of some missions.
+"""Tasks that run close to the data: score missions, or read the transitions of selected ones.
 
-A worker reads the files itself. It returns one byte for each score of a mission (the bin of the score), or the
-transitions of those missions that are compared with the recording.
+Workers read the files themselves. For each mission, they return one byte per score (its bin). For the missions that are
+compared with the recording, they return the transitions.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
 from pytest_tarl.monitoring.scores import Scale, binned
 from pytest_tarl.sensors import Cell
 
-ENTRIES = 1_000_000  # maximum number of entries in a table of missions and cells
+ENTRIES = 1_000_000  # maximum size (missions × cells) of a table
 CELLS = ("mission", "cell", "next_cell", "count", "reward")
 RESULTS = ("mission", "passed", "total", "steps")
 
@@ -36,13 +36,13 @@ class Wanted:
     numbers: Ints
 
     def only(self, chosen: NDArray[np.bool_]) -> Wanted:
-        """Return the missions for which `chosen`, of shape (missions,), is true."""
+        """Return the missions where `chosen`, of shape (missions,), is true."""
         return replace(self, identities=self.identities[chosen], numbers=self.numbers[chosen])
 
 
 @dataclass(frozen=True)
 class Transitions:
-    """Rows of transitions, sorted by all columns; `number` is the number of the mission.
+    """Rows of transitions, sorted by all columns; `number` is the mission's number.
 
     `next_cell` is END after the last step.
     """
@@ -54,7 +54,7 @@ class Transitions:
     reward: Floats
 
     def chain(self, numbers: Ints) -> Chain:
-        """Return the transitions as a chain; the index of a mission is its place in `numbers`.
+        """Return the transitions as a chain; a mission's index is its position in `numbers`.
 
         `numbers` has shape (missions,) and is ascending.
         """
@@ -64,7 +64,7 @@ class Transitions:
         )
 
     def of(self, numbers: Ints) -> Transitions:
-        """Return the transitions of the missions with the given numbers (sorted)."""
+        """Return the transitions of the missions with these (sorted) numbers."""
         low, high = np.searchsorted(self.number, numbers), np.searchsorted(self.number, numbers, side="right")
         sizes = high - low
         rows = np.repeat(low - np.cumsum(sizes) + sizes, sizes) + np.arange(int(sizes.sum()))
@@ -78,7 +78,7 @@ class Transitions:
 
 @dataclass(frozen=True)
 class Scored:
-    """The score bins, shape (missions, scores), and the visits to unrecorded cells."""
+    """The score bins, shape (missions, scores), and the visits to cells that are not in the recording."""
 
     numbers: Ints
     bins: NDArray[np.int8]
@@ -86,7 +86,7 @@ class Scored:
 
 
 def scored(where: Store, wanted: Sequence[Wanted], scale: Scale) -> Scored:
-    """Return the scores of missions. Raise FleetError if a file cannot be read."""
+    """Score missions. Raise FleetError if a file cannot be read."""
     recorded, missions = len(scale.cells), np.concatenate([one.numbers for one in wanted])
     tables = [dataset.columns(where, one.cells, CELLS) for one in wanted]
     names = {name for one in tables for column in ("cell", "next_cell") for name in _names(one[column])}
@@ -113,7 +113,7 @@ def scored(where: Store, wanted: Sequence[Wanted], scale: Scale) -> Scored:
 
 
 def transitions(where: Store, wanted: Sequence[Wanted], number: Mapping[str, int]) -> Transitions:
-    """Return the transitions of missions; `number` maps the name of each cell to its code.
+    """Return the transitions of missions; `number` gives the code of each cell name.
 
     Raise FleetError if a file cannot be read.
     """
@@ -125,12 +125,12 @@ def transitions(where: Store, wanted: Sequence[Wanted], number: Mapping[str, int
 
 
 def numbered(cells: Sequence[Cell]) -> dict[str, int]:
-    """Return the number of each cell by its name."""
+    """Return cell name → number."""
     return {name_of(cell): number for number, cell in enumerate(cells)}
 
 
 def _rows(table: Any, wanted: Wanted, number: Mapping[str, int]) -> Transitions:
-    """Return the transitions of a part's missions, numbered by their place in `wanted`."""
+    """Return the transitions of a part's missions, numbered by their position in `wanted`."""
     mission = _values(table["mission"], np.uint64)
     begins = (
         np.flatnonzero(np.append(True, mission[1:] != mission[:-1])) if mission.size else np.empty(0, int)
@@ -151,7 +151,7 @@ def _rows(table: Any, wanted: Wanted, number: Mapping[str, int]) -> Transitions:
 
 
 def _results(where: Store, wanted: Wanted) -> dict[str, Any]:
-    """Return whether missions passed, their totals and steps, in the order of `wanted`."""
+    """Return whether each mission passed, with its total and steps, in the order of `wanted`."""
     table = dataset.columns(where, wanted.missions, RESULTS)
     mission = _values(table["mission"], np.uint64)
     order = np.argsort(mission, kind="stable")
@@ -161,7 +161,7 @@ def _results(where: Store, wanted: Wanted) -> dict[str, Any]:
 
 
 def sorted_rows(some: Sequence[Transitions]) -> Transitions:
-    """Return all rows in one table, sorted by all columns."""
+    """Join rows in one table, sorted by all columns."""
     columns = {
         name: np.concatenate([np.empty(0, kind), *(getattr(one, name) for one in some)])
         for name, kind in (
@@ -171,7 +171,7 @@ def sorted_rows(some: Sequence[Transitions]) -> Transitions:
     }
     keys = [columns[name] for name in ("number", "cell", "next_cell")]
     width = 2 + max((int(one.max()) for one in keys[1:] if one.size), default=0)
-    # different rows have different keys, because keys[2] is from END = -1 to width - 2
+    # keys are unique, because keys[2] ranges from END = -1 to width - 2
     key = (keys[0] * width + keys[1]) * width + keys[2]
     steps = np.diff(key)
     if (steps > 0).all():
@@ -183,17 +183,17 @@ def sorted_rows(some: Sequence[Transitions]) -> Transitions:
 
 
 def watched_chain(chain: Chain, recorded: int) -> Chain:
-    """Return the chain with one cell for all unrecorded cells, and rounded values."""
+    """Return the chain with all unrecorded cells replaced by a single one, and with rounded values."""
     return represented_chain(_without_others(chain, recorded))
 
 
 def bare(cells: int, passed: Any, total: Floats, steps: Ints, chain: Chain) -> Sample:
-    """Return missions as a sample whose cells have no names; all arrays have shape (missions,)."""
+    """Return missions as a sample without cell names; all arrays have shape (missions,)."""
     return Sample(((),) * cells, tuple(range(len(passed))), passed, total, steps, (), chain, ())
 
 
 def _without_others(chain: Chain, recorded: int) -> Chain:
-    """Replace all unrecorded cells by one, and merge equal transitions."""
+    """Replace all unrecorded cells by a single one, and merge equal transitions."""
     width = recorded + 1
     cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
     if not ((chain.cell >= recorded).any() or (chain.next_cell >= recorded).any()):
@@ -210,7 +210,7 @@ def _without_others(chain: Chain, recorded: int) -> Chain:
 
 
 def _codes(column: Any, number: Mapping[str, int]) -> Ints:
-    """Return the codes of cell names: END for null, -2 for unknown cells."""
+    """Return the codes of cell names: END for null, -2 for an unknown cell."""
     parts = [np.empty(0, np.int64)]
     for chunk in _encoded(column).chunks:
         code = np.array([*(number.get(name, -2) for name in chunk.dictionary.to_pylist()), END], np.int64)
@@ -232,7 +232,7 @@ def _values(column: Any, kind: Any) -> Any:
 
 
 def portions(wanted: Sequence[Wanted], most: int) -> Iterator[list[Wanted]]:
-    """Divide the selected missions into tasks of about `most` missions."""
+    """Divide the selected missions into tasks of at most about `most` missions."""
     together: list[Wanted] = []
     for one in wanted:
         if not one.numbers.size:

@@ -30,7 +30,7 @@ from pytest_tarl.learning.fixture import Fixture, load, parsed
 from pytest_tarl.monitoring.monitor import begun
 from pytest_tarl.sensors import Cell
 
-LOWEST = 10  # number of missions to list if a single robot is asked for
+LOWEST = 10  # number of missions to list when only one robot is selected
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ class Question:
     robot: str = ""
     alpha: float = 0.05
     tolerance: float | None = None
-    cluster: str = ""  # address of a Dask scheduler; without it, threads of this process are used
-    workers: int = 1  # number of threads of this process if there is no cluster
+    cluster: str = ""  # address of a Dask scheduler; empty to use threads of this process
+    workers: int = 1  # number of threads of this process, if there is no cluster
 
 
 @dataclass(frozen=True)
 class Mission:
-    """A mission of one robot; `time` in seconds since 1970."""
+    """A mission of one robot; `time` is in seconds since 1970."""
 
     time: float
     passed: bool
@@ -60,7 +60,7 @@ class Mission:
 
 @dataclass(frozen=True)
 class Answer:
-    """The answer from a data set; `left_out` counts missions that cannot be compared."""
+    """The answer from a data set; `left_out` counts the missions that cannot be compared."""
 
     question: Question
     fixture: Fixture
@@ -68,16 +68,16 @@ class Answer:
     copies: int  # number of duplicate rows that were ignored
     cells: tuple[Cell, ...]
     groups: tuple[mission_groups.Group, ...]
-    onsets: changed_robots.Robots  # for each robot, the evidence of a change and the time of that change
+    onsets: changed_robots.Robots  # for each robot, the evidence of a change and when it began
     robots: changed_robots.Robots
     parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
-    accepted: Mapping[str, str] = field(default_factory=dict)  # the drift for which each repair was accepted
-    # starts of the first and the last mission; 0 if no start is known
+    accepted: Mapping[str, str] = field(default_factory=dict)  # repair → drift for which it was accepted
+    # starts of the first and last mission; 0 if no start is known
     period: tuple[float, float] = (0.0, 0.0)
-    lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
+    lowest: tuple[Mission, ...] = ()  # the selected robot's missions with the lowest totals
 
     def meets(self, rule: str) -> bool:
         """Return whether the answer meets a rule of --fail-if."""
@@ -91,7 +91,7 @@ class Answer:
 
 
 def answer(question: Question) -> Answer:
-    """Judge the selected missions. Raise FleetError, FixtureError or SettingsError if there is nothing to judge."""
+    """Judge the selected missions. Raise FleetError, FixtureError or SettingsError if there are none."""
     _check(question)
     where = store(question.data)
     parts = dataset.parts(where)
@@ -117,12 +117,12 @@ def answer(question: Question) -> Answer:
 
 
 def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]:
-    """Return the drift for which each repair was accepted, if it is known."""
+    """Return the drift for which each repair was accepted, where known."""
     found = {}
     for repair in sorted({one.repair for one in effects}):
         path = repair_path(repair)
         if where.holds(path):
-            # a file that another program wrote may have other content
+            # the file may come from another program and have other content
             with suppress(ValueError, AttributeError):
                 found[repair] = str(json.loads(where.read(path)).get("drift", ""))
     return {repair: drift for repair, drift in found.items() if drift}
@@ -184,7 +184,7 @@ def _lowest(database: Database) -> tuple[Mission, ...]:
 
 
 def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple[Fixture, Origin]:
-    """Return the named recording, or else that of the data set."""
+    """Return the named recording; without a name, the recording of the data set."""
     if question.fixture is not None:
         fixture = load(question.fixture)
         return fixture, origin(fixture, question.fixture.read_bytes())
@@ -206,7 +206,7 @@ def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple
 
 
 def _left_out(parts: Sequence[Part], own: Origin) -> dict[str, int]:
-    """Return the number of missions that cannot be compared, by reason."""
+    """Return how many missions cannot be compared, by reason."""
     found: Counter[str] = Counter()
     for part in parts:
         if part.origin.fits(own):

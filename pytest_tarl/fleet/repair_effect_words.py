@@ -1,4 +1,4 @@
-"""The effects of repairs as lines of text."""
+"""Describe the effects of repairs in lines of text."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WHY = {
 
 
 def lines(effects: Sequence[Effect], accepted: Mapping[str, str]) -> Iterator[str]:
-    """Yield one line per repair and group: the effect of the repair on missions."""
+    """Yield one line per repair and group."""
     yield (
         "Repairs, against missions without a repair at the same site in the same week (simultaneous "
         "intervals at "
@@ -45,6 +45,6 @@ def _interval(bound: Bound, unit: float) -> str:
 
 
 def interval(bound: Bound, unit: float) -> str:
-    """Return an interval in words; empty if it is not known."""
+    """Return an interval in words; empty if it is unknown."""
     known = bound.low > float("-inf")
     return f"{unit * bound.low:+.3g} to {unit * bound.high:+.3g}" if known else ""

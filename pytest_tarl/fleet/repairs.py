@@ -1,10 +1,10 @@
-"""The effect of each repair on the missions of each group, compared with missions without a repair.
+"""Estimate the effect of each repair per group, compared with missions without a repair.
 
-A staged roll-out has missions with and without the repair at the same time. Missions are compared only within a stratum
-(one group, site and week), so differences between seasons or sites do not count as an effect (stratification; Cochran
-1968, Biometrics 24:295-313). The effect is the weighted mean of the strata's differences; the weights n₁n₀/(n₁ + n₀)
-minimise its variance. Missions of one robot are alike, so the interval is computed by Tukey's jackknife over robots
-(Miller 1974, Biometrika 61:1-15) with Student's t.
+During a staged roll-out, missions run with and without the repair at the same time. Missions are compared only within a
+stratum (the same group, site and week), so differences between seasons or sites do not count as an effect
+(stratification; Cochran 1968, Biometrics 24:295-313). The effect is the weighted mean of the strata's differences, with
+the weights n₁n₀/(n₁ + n₀), which minimise its variance. Missions of one robot are alike, so the interval comes from
+Tukey's jackknife over robots (Miller 1974, Biometrika 61:1-15) with Student's t.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.model import Bound
 
-FEWEST = 4  # minimum number of robots with the repair, and of robots without it, for an interval
-ALPHA = 0.05  # probability that at least one interval of one repair is wrong
+FEWEST = 4  # minimum number of robots with and without the repair, for an interval
+ALPHA = 0.05  # probability that any interval of a repair is wrong
 OUTCOMES = ("total", "passed")
 
 
@@ -29,8 +29,8 @@ OUTCOMES = ("total", "passed")
 class Effect:
     """The effect of a repair in a group; `reward` and `success` are differences per mission.
 
-    Both are NaN if no stratum has both missions with the repair and missions without it. `missions` and `robots` are
-    counted only in strata that have both kinds of missions.
+    Both are NaN if no stratum has missions with and without the repair. `missions` and `robots` count only strata that
+    have both.
     """
 
     repair: str
@@ -45,7 +45,7 @@ class Effect:
 
     @property
     def verdict(self) -> str:
-        """Return whether the repair helps, judged by the interval of the reward."""
+        """Return whether the repair helps, according to the interval of the reward."""
         if not self.strata:
             return "not comparable"
         if isinf(self.reward_bound.low):
@@ -57,7 +57,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class Strata:
-    """Missions and sums of rewards, by robot and stratum (rows), without and with the repair (columns)."""
+    """Missions and sums of rewards by robot and stratum (rows), without and with the repair (columns)."""
 
     robot: Ints
     stratum: Ints
@@ -67,7 +67,7 @@ class Strata:
 
 
 def effects(database: Database, by: Sequence[str]) -> tuple[Effect, ...]:
-    """Return the effect of each repair in each group; the columns `by` form the groups."""
+    """Return the effect of each repair in each group; groups are formed by the columns `by`."""
     columns = tuple(one for one in by if one != "repair")
     repairs = [
         one for (one,) in database.names("SELECT DISTINCT repair FROM missions WHERE repair <> '' ORDER BY 1")
@@ -103,7 +103,7 @@ def _strata(database: Database, repair: str, columns: Sequence[str], values: Seq
 
 
 def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Ints) -> Strata:
-    """Return one row per robot and stratum with missions of both kinds."""
+    """Return one row per robot and stratum, for strata with missions of both kinds."""
     stratum, treated = stratum.astype(np.int64), treated.astype(np.int64)
     both = np.bincount(stratum * 2 + treated, minlength=2 * (int(stratum.max(initial=0)) + 1)).reshape(-1, 2)
     there = both.min(axis=1)[stratum] > 0
@@ -118,7 +118,7 @@ def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Int
 
 
 def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float) -> Effect:
-    """Return the effect over the strata, with one-sided bounds of the given confidence."""
+    """Return the effect over the strata, with one-sided bounds at the given confidence."""
     counts = rows.count.sum(axis=0).astype(int).tolist() if len(rows.robot) else [0, 0]
     robots = [len(set(rows.robot[rows.count[:, arm] > 0].tolist())) for arm in (0, 1)]
     (reward, reward_bound), (success, success_bound) = (
@@ -138,7 +138,7 @@ def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float
 
 
 def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tuple[float, Bound]:
-    """Return the difference and its bounds by the jackknife over robots."""
+    """Return the difference, with bounds from the jackknife over robots."""
     if not len(rows.robot):
         return float("nan"), mean_of((), confidence)
     number = int(rows.stratum.max()) + 1
@@ -163,7 +163,7 @@ def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tu
 
 
 def _difference(count: Floats, total: Floats) -> tuple[Floats, Floats]:
-    """Return weight and weighted difference of each row; 0 without missions of both kinds."""
+    """Return the weight and the weighted difference of each row; 0 unless it has missions of both kinds."""
     both = count.min(axis=1) > 0.5
     safe = np.where(both[:, None], count, 1.0)
     weight = np.where(both, safe[:, 0] * safe[:, 1] / safe.sum(axis=1), 0.0)

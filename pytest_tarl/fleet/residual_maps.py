@@ -1,8 +1,7 @@
-"""The residual map of a robot: for each cell, how much more or less a visit earns than in the recording.
+"""Compute a robot's residual map: how much more or less than recorded a visit to each cell earns.
 
-Each value has a variance. The residual of a visit is the Bellman residual of the recorded utility
-(learning/residuals.py), so it shows the cells in which the world changed, and not the cells that a robot visits before
-them.
+The residual of a visit is the Bellman residual of the recorded utility (learning/residuals.py). It therefore shows the
+cells in which the world changed, and not the cells visited before them. Each value has a variance.
 """
 
 from __future__ import annotations
@@ -21,12 +20,12 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.residuals import Model, fitted, residuals
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 
-FEWEST = 5  # minimum number of missions in a cell for which a residual is stated
+FEWEST = 5  # minimum number of missions in a cell for a residual
 
 
 @dataclass(frozen=True)
 class ResidualMap:
-    """Mean and variance of the residual per cell; NaN with too few missions."""
+    """Mean and variance of the residual per cell; NaN if there are too few missions."""
 
     robot: str
     mean: Floats
@@ -35,7 +34,7 @@ class ResidualMap:
 
 @dataclass(frozen=True)
 class Designed:
-    """The recorded model, with the residual variance per cell and per visit."""
+    """The model of the recording, with the residual variance per cell and per visit."""
 
     model: Model
     variance: Floats
@@ -43,7 +42,7 @@ class Designed:
 
 
 def designed(fixture: Fixture) -> Designed:
-    """Return the model of a recording, with one cell for all unrecorded cells."""
+    """Return the model of a recording, with a single cell for all unrecorded cells."""
     cells = len(fixture.sample.cells) + 1
     model = fitted(fixture.sample.chain, cells)
     own = Sample(**{**vars(fixture.sample), "cells": ((),) * cells, "lists": ()})
@@ -59,10 +58,10 @@ def residual_maps(
     world: Designed,
     robots: Sequence[Robot],
 ) -> list[ResidualMap]:
-    """Return the residual map of each robot, over its missions since the onset of its difference.
+    """Return each robot's residual map over its missions since the onset of its difference.
 
-    The few residuals of a robot with few missions may be similar by chance, which makes their variance too small. The
-    variance of a map is therefore at least the variance that the same number of recorded visits would have.
+    A robot with few missions may have similar residuals by chance, which makes their variance too small. The variance
+    of a map is therefore at least that of the same number of recorded visits.
     """
     query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
     spans = []
@@ -82,7 +81,7 @@ def _map(name: str, sample: Sample, world: Designed) -> ResidualMap:
 
 
 def since(robot: Robot) -> int:
-    """Return the number of missions before the onset; 0 if it is unknown."""
+    """Return the number of missions before the onset; 0 if the onset is unknown."""
     if robot.status is None:
         return 0
     below = lower(robot.status)
@@ -91,7 +90,7 @@ def since(robot: Robot) -> int:
 
 
 def _mean(sample: Sample, model: Model) -> tuple[Floats, Floats, Floats]:
-    """Return mean residual, variance and visits per cell, for independent missions."""
+    """Return the mean residual, its variance and the visits per cell, for independent missions."""
     found = residuals(sample, model)
     total = found.move + found.reward
     place = sample.chain.episode * total.shape[1] + sample.chain.cell

@@ -1,4 +1,4 @@
-"""Missions as samples for the comparison, built from the transitions that workers return."""
+"""Build samples of missions for the comparison, from the transitions that workers return."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.fleet.scores import transitions
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.sensors import Cell
 
-COLUMNS = "number, mission, passed, total, steps"  # columns that are read from the table `missions`
+COLUMNS = "number, mission, passed, total, steps"  # columns to read from the table `missions`
 COMPARED = """
     CREATE OR REPLACE TEMP TABLE compared AS
     SELECT number, group_number FROM (
@@ -31,9 +31,9 @@ PORTION = 100_000  # number of missions read at a time
 def groups(
     database: Database, where: Store, engine: Engine, cells: tuple[Cell, ...], count: int, most: int
 ) -> Iterator[Sample]:
-    """Yield at most `most` missions of each of `count` groups.
+    """Yield at most `most` missions from each of `count` groups.
 
-    The missions with the smallest IDs are chosen; IDs are hashes, so the choice is random.
+    It chooses the missions with the smallest IDs. IDs are hashes, so the choice is random.
     """
     database.run(COMPARED, most)
     sizes = database.columns(
@@ -71,9 +71,9 @@ def _grouped(rows: Columns, every: Transitions, cells: tuple[Cell, ...]) -> Samp
 def following(
     database: Database, where: Store, engine: Engine, cells: Sequence[Cell], spans: Sequence[tuple[int, int]]
 ) -> Iterator[Sample]:
-    """Yield the missions of each span of numbers.
+    """Yield the missions of each span of mission numbers.
 
-    These samples have the recording's `cells`, and one more cell that stands for all others.
+    The samples have the cells in `cells`, and one more cell for all others.
     """
     numbers = [np.arange(low, high) for low, high in spans]
     every: Ints = np.unique(np.concatenate([np.empty(0, np.int64), *numbers]))

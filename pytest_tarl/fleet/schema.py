@@ -1,4 +1,4 @@
-"""The tables of a fleet's data set: Parquet files with a schema version and hashes of the recording.
+"""Define the tables of a fleet's data set: Parquet files with a schema version and hashes of the recording.
 
     missions/test=…/version=…/date=…/KEY.parquet      one row per mission
     cells/…, same path                                one row per mission and transition between cells
@@ -26,7 +26,7 @@ from pytest_tarl.sensors import Cell, binning_digest
 
 SCHEMA_VERSION = 2
 READABLE = (1, 2)
-TABLES = ("statements", "cells", "missions")  # the tables, in the order in which they are written
+TABLES = ("statements", "cells", "missions")  # in the order in which they are written
 PREFIX = "tarl."
 _NAME = pa.dictionary(pa.int32(), pa.string())
 
@@ -47,8 +47,8 @@ SCHEMAS = {
     "cells": pa.schema(
         [
             ("mission", pa.uint64()),
-            ("cell", _NAME),  # the cell, as the bins of the sensors: "3,0"
-            ("next_cell", _NAME),  # the cell of the next step; null for the last step of the mission
+            ("cell", _NAME),  # the bins of the sensors, as in "3,0"
+            ("next_cell", _NAME),  # null for the last step of the mission
             ("count", pa.int64()),
             ("reward", pa.float64()),  # sum of the rewards of these `count` steps
         ]
@@ -71,12 +71,12 @@ SCHEMAS = {
 class Origin:
     """The recording with which missions were ingested.
 
-    Cells are comparable between origins with equal test, sensors and statements.
+    Missions can be compared if the test, sensors and statements of their origins are equal.
     """
 
     test: str
     sensors: str  # hash of the sensors and their bins
-    statements: str  # hash of the statements of all taint lists
+    statements: str  # hash of the statements in all taint lists
     recording: str  # hash of the recording's file
 
     def fits(self, other: Origin) -> bool:
@@ -85,7 +85,7 @@ class Origin:
 
     @property
     def folder(self) -> str:
-        """Return the name of the test's partition."""
+        """Return the folder name of the test's partition."""
         return f"{slug(self.test)}-{hashlib.sha256(self.test.encode()).hexdigest()[:8]}"
 
 
@@ -106,7 +106,7 @@ def metadata(where: Origin) -> dict[str, str]:
 
 
 def partition(where: Origin, version: str, date: str) -> str:
-    """Return the folder of a partition below its table's."""
+    """Return the folder of a partition, relative to the table's folder."""
     return f"test={where.folder}/version={quote(version, safe='')}/date={date}"
 
 
@@ -121,5 +121,5 @@ def name_of(cell: Cell) -> str:
 
 
 def cell_of(name: str) -> Cell:
-    """Return the cell with this name. Raise ValueError for other texts."""
+    """Return the cell with this name. Raise ValueError if the text is no cell name."""
     return tuple(int(one) for one in name.split(",")) if name else ()

@@ -1,4 +1,4 @@
-"""The scores of all selected missions, one byte each."""
+"""Score all selected missions; each score takes one byte."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ PORTION = 25_000  # number of missions scored in one task
 
 @dataclass(frozen=True)
 class Scores:
-    """Missions in some order: results, start in seconds since 1970, and bins of scores, shape (missions, scores).
+    """Missions in any order: results, start in seconds since 1970, and score bins, shape (missions, scores).
 
-    Each visit of a mission to a cell that is not in the recording has one entry in two arrays: `new_mission` holds the
-    index of the mission (ascending), `new_cell` the index of the cell in `others`.
+    Each visit to a cell that is not in the recording has an entry in two arrays: `new_mission`, the index of the
+    mission (ascending), and `new_cell`, the index of the cell in `others`.
     """
 
     passed: NDArray[np.bool_]
@@ -68,12 +68,12 @@ class Scores:
         )
 
     def new(self) -> list[Cell]:
-        """Return the unrecorded cells, once per mission that visited them."""
+        """Return the unrecorded cells, once for each mission that visited them."""
         return [self.others[number] for number in self.new_cell.tolist()]
 
 
 def scored(database: Database, where: Store, scale: Scale, engine: Engine) -> Scores:
-    """Return the scores of all missions, in the order of their numbers."""
+    """Score all missions, in the order of their numbers."""
     results = database.columns("SELECT passed, total, steps, time FROM missions ORDER BY number")
     bins = np.empty((len(results["total"]), len(scale.edges)), np.int8)
     new: list[tuple[int, Cell]] = []

@@ -1,7 +1,7 @@
-"""Monitor many robots at once; the state of each robot is exactly that of a monitor of its own.
+"""Run the monitors of many robots at once, with exactly the results of separate monitors.
 
-All robots start with the same pool, and the random numbers that break ties depend only on the index of a mission.
-Therefore, the n-th missions of many robots can be judged in one step.
+All robots start with the same pool, and the random numbers that break ties depend only on the index of a mission. The
+n-th missions of many robots can therefore be judged in one step.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from pytest_tarl.monitoring import bet_updates, conformal
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.restarts import Processes, log_evidence
 
-COLUMNS = 512  # number of processes judged together; their state fits into the processor's cache
+COLUMNS = 512  # number of processes judged together, so that their state fits into the processor's cache
 
 
 @dataclass(frozen=True)
 class Watched:
-    """Robots after all of their missions; columns are those of bet_updates.py."""
+    """Robots after all their missions; for the columns see bet_updates.py."""
 
-    robots: Ints  # index of each robot in the whole fleet
+    robots: Ints  # index of each robot in the fleet
     processes: Processes
     pool: Ints
     bounds: int
@@ -48,7 +48,7 @@ class Watched:
         return np.concatenate((stated.reshape(-1, size).T, scored.reshape(size, -1)), axis=1)
 
     def state(self, place: int) -> tuple[Processes, Ints]:
-        """Return the processes of one robot and its pool, of shape (scores, bins)."""
+        """Return the processes of one robot, and its pool of shape (scores, bins)."""
         mine = bet_updates.columns(self.bounds, self.scores, len(self.robots), place)
         values = {one.name: getattr(self.processes, one.name)[..., mine] for one in fields(Processes)}
         return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
@@ -57,11 +57,12 @@ class Watched:
 def watched(
     first: Monitor, scores: Scores, ends: Ints, some: Ints | None = None, onsets: bool = True
 ) -> Iterator[Watched]:
-    """Judge the missions of robots, in batches with similar numbers of missions.
+    """Judge the missions of robots, in batches of robots with similar numbers of missions.
 
-    The missions of robot n end before `ends[n]`; `ends` has shape (robots,). `first` is a monitor that has not seen any
-    mission. `some`, of shape (chosen,), are the indices of the robots to judge (default: all). Without `onsets`, the
-    start of a difference is not tracked, which is faster.
+    - `first`: a monitor without missions
+    - `ends`, shape (robots,): the missions of robot n end before `ends[n]`
+    - `some`, shape (chosen,): indices of the robots to judge; all by default
+    - `onsets`: False skips tracking the start of differences, which is faster
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins

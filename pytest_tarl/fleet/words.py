@@ -1,4 +1,4 @@
-"""The answer of `tarl fleet` as text."""
+"""Describe the answer of `tarl fleet` in lines of text."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
 from pytest_tarl.report.sensor_regions import Vocabulary
 
-NAMED = 20  # maximum number of robots listed
+NAMED = 20  # maximum number of robots to list
 
 
 def lines(answer: Answer) -> Iterator[str]:
-    """Yield the report."""
+    """Yield the lines of the report."""
     question, found = answer.question, answer.robots
     words = Vocabulary(answer.fixture.sensors, answer.cells)
     since = f" since {question.since}" if question.since else ""
@@ -55,7 +55,7 @@ def lines(answer: Answer) -> Iterator[str]:
 
 
 def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
-    """Yield the groups whose missions changed over time, and when."""
+    """Yield the groups whose missions changed, and when."""
     found = answer.onsets
     if not answer.question.by:
         return
@@ -74,7 +74,7 @@ def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
 
 
 def _clusters(answer: Answer, words: Vocabulary) -> Iterator[str]:
-    """Yield the robots whose drifts are alike."""
+    """Yield the clusters of robots with similar drifts."""
     found = answer.clusters
     if not found.found and not found.unclear:
         return
@@ -172,7 +172,7 @@ def _evidence(log2: float) -> str:
 
 
 def time(seconds: float) -> str:
-    """Return a time as day and minute (UTC)."""
+    """Return a time as day and minute in UTC."""
     return f"{datetime.fromtimestamp(seconds, timezone.utc):%Y-%m-%d %H:%M}" if seconds > 0 else "no time"
 
 
@@ -181,7 +181,7 @@ def _counted(count: int, what: str) -> str:
 
 
 def notes(answer: Answer) -> Iterator[str]:
-    """Yield the conditions under which the numbers of the report hold."""
+    """Yield the assumptions behind the report's numbers."""
     confidence = answer.groups[0].success.confidence
     yield (
         f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for "
