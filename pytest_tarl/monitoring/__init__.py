@@ -1,1 +1,1 @@
-"""Watch endless missions for a loss of performance or a change of the world."""
+"""Monitor a stream of missions for a loss of performance or a change of the world."""

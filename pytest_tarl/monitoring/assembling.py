@@ -1,6 +1,6 @@
-"""Assemble missions from the records of one log.
+"""Assemble missions from the records of a log.
 
-A mission is one run of the robot, between a `mission` and an `end` record.
+A mission is one run of the robot, from a `mission` record to an `end` record.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pytest_tarl.monitoring.mission import Mission, Progress, Steps, Table, adva
 from pytest_tarl.observing.log_format import Record
 from pytest_tarl.sensors import Cell
 
-LATEST = 1e11  # seconds since 1970; a later time comes from a wrong clock
+LATEST = 1e11  # seconds since 1970; a later time means that the clock is wrong
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Expected:
     number: Mapping[Cell, int]
 
     def problem(self, start: Record, path: Path) -> str:
-        """Return why missions after `start` are not comparable, or ""."""
+        """Return why missions after the record `start` cannot be compared, or an empty text."""
         names = start.get("sensors", [])
         if [*names] != [*self.sensors]:
             return (
@@ -55,22 +55,22 @@ class Expected:
 
 @dataclass
 class Assembly:
-    """The state of reading a log, with its unfinished mission."""
+    """The state of reading a log, including its unfinished mission."""
 
     expected: Expected
     path: Path
-    # the progress when the log was opened; `refused` in it says why later missions are not counted
+    # the progress when the log was opened; its `refused` says why later missions are not counted
     begun: Progress
     place: int
     missions: int = 0
     unfinished: int = 0
-    # the last record of the latest mission, or a later record that belongs to no mission
+    # the last record of the latest mission, or a later record outside any mission
     _last: Spot | None = None
     _latest: Spot | None = None  # the last record read
-    # start time (in s since 1970) and steps of the unfinished mission
+    # start time (seconds since 1970) and steps of the unfinished mission
     _mission: tuple[float, list[Steps]] | None = None
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
-    _text: bytes = b""  # JSON from which `_table` was read, if that was a mission in consecutive records
+    _text: bytes = b""  # JSON that `_table` was read from, if it came from a mission in consecutive records
 
     @property
     def progress(self) -> Progress:
@@ -113,19 +113,19 @@ class Assembly:
         return self._ended(passed == b"true", valid_time(time), [steps], spot)
 
     def _ended(self, passed: bool, time: float, steps: list[Steps], spot: Spot) -> Mission:
-        """Return the mission whose `end` record is at this spot."""
+        """Return the mission that ends with the `end` record at this spot."""
         self._mission, self._last, self.missions = None, spot, self.missions + 1
         new = _new(steps) if any(table.new for table, _, _ in steps) else ()
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
 
     def _take(self, record: Record, before: Spot | None) -> None:
-        """Process a record that ends no counted mission."""
+        """Process a record that does not end a counted mission."""
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":
             self._mission = valid_time(record["time"]), []
             if not torn and (before is None or before == self._last):
-                return  # nothing is lost, because this mission begins directly after the previous one
+                return  # nothing was lost: this mission starts directly after the previous one
             last = before
         elif kind == "start":
             self.begun = self.begun._replace(refused=self.expected.problem(record, self.path))

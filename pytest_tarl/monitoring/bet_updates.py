@@ -1,7 +1,7 @@
-"""Update the bets with new missions, for one robot or for several robots at once.
+"""Update the bets with new missions, for one or more robots at once.
 
-The columns are first the bounds (each for all robots), then the scores (robot by robot). Columns do not affect each
-other. The result of a robot is therefore the same, to the last bit, as if it were judged alone.
+The first columns are the bounds (each for all robots), followed by the scores (robot by robot). Columns are
+independent, so a robot's result is the same, to the last bit, as if it were judged alone.
 """
 
 from __future__ import annotations
@@ -31,12 +31,17 @@ def judged(
     ends: Ints | None = None,
     onsets: bool = True,
 ) -> Ints:
-    """Update the processes with consecutive missions of each robot, and return the updated pool.
+    """Update the processes with consecutive missions of each robot; return the updated pool.
 
-    `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), and the
-    pool (robots · scores, BINS). `first` is the number of the first mission. There may be at most conformal.TOGETHER
-    missions. If robots have different numbers of missions, `ends`, shape (robots,), holds these numbers; bins of
-    missing missions are -1. Without `onsets`, the start of a difference is not tracked, which is faster.
+    - `passed`, `total`: shape (missions, robots)
+    - `bins`: shape (missions, robots, scores); -1 for a missing mission
+    - `draws`: shape (missions,)
+    - `pool`: shape (robots · scores, BINS)
+    - `first`: number of the first mission
+    - `ends`, shape (robots,): the numbers of missions, if robots have different numbers
+    - `onsets`: False skips tracking the start of differences, which is faster
+
+    There may be at most conformal.TOGETHER missions.
     """
     count, robots, scores = bins.shape
     flat, split = bins.reshape(count, robots * scores), len(bounds) * robots
@@ -54,9 +59,9 @@ def judged(
 
 
 def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
-    """Return the processes of several robots before the first mission.
+    """Return the processes of several robots before their first mission.
 
-    `threshold`, of shape (bounds + scores,), holds the values of one robot.
+    `threshold`, of shape (bounds + scores,), has the values for a single robot.
     """
     return restarts.begun(
         np.append(np.repeat(threshold[:bounds], robots), np.tile(threshold[bounds:], robots))
@@ -70,7 +75,7 @@ def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
 
 
 def _told(bound: Bound, total: Floats) -> Truths:
-    """Return which missions count for a bound, as booleans in the shape of the totals."""
+    """Return which missions count for a bound, as booleans of the same shape as the totals."""
     testable = e_process.testable(float(bound.share(bound.least)))
     told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
     return told

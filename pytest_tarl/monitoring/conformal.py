@@ -1,14 +1,13 @@
 """Conformal test martingales: test whether new missions are exchangeable with held-out recorded ones.
 
-The pool starts with the scores of the held-out recorded missions. Each new mission is ranked in the pool and then joins
-the pool. While missions are exchangeable, the smoothed rank of a new score is exactly uniform and independent of all
+The pool starts with the scores of the held-out recorded missions. Each new mission is ranked in the pool and then added
+to it. As long as missions are exchangeable, the smoothed rank of a new score is exactly uniform and independent of all
 earlier ranks, for any number of recorded missions (Vovk, Gammerman & Shafer 2005, theorem 8.1). A fixed pool would not
-work: it would hold few missions, and their peculiarities would accumulate as evidence.
+work: it has few missions, and their peculiarities would accumulate as evidence.
 
-Scores are rounded to bins. The edges of the bins come from the other half of the recorded missions, so the bin is a
-fixed function of the score. The pool is then a row of counts, and its size does not grow with the number of missions.
-Ties are broken at random, so the test stays exact. A bet is a non-negative function of the rank p with integral 1 over
-[0, 1].
+Scores are rounded to bins. The bin edges come from the other half of the recorded missions, so the bin is a fixed
+function of the score. The pool is a row of counts, whose size does not grow with the number of missions. Ties are
+broken at random to keep the test exact. A bet is a non-negative function of the rank p with integral 1 over [0, 1].
 """
 
 from __future__ import annotations
@@ -19,17 +18,17 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-# number of bins beyond the fitted scores at each end; each is twice as wide as the one before
+# number of bins beyond the fitted scores at each end; each is twice as wide as its inner neighbour
 TAIL = 8
 TOGETHER = 64  # number of missions ranked together; a multiple of 8 below 256, see `_counted`
-CLOSE = 1e-4  # values within this share of a score's unit count as equal
+CLOSE = 1e-4  # values that differ by less than this share of a score's unit count as equal
 
 
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
-    """Return the edges of the bins, shape (BINS - 1,), given the fitted scores, which are not in the pool.
+    """Return the bin edges, shape (BINS - 1,), from the fitted scores, which are not in the pool.
 
     Edges lie midway between neighbouring values, so rounding errors do not move a value into another bin. A score is a
-    sum, and `unit` is the magnitude of its terms. Unused bins have infinite edges and stay empty.
+    sum; `unit` is the magnitude of its terms. Unused bins have infinite edges and stay empty.
     """
     unit = unit or 1.0
     values = np.unique(np.rint(fitted / (CLOSE * unit))) * (CLOSE * unit)
@@ -47,11 +46,13 @@ def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
 
 
 def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
-    """Return the smoothed ranks p and 1 - p of new scores, shape (missions, scores), both above 0.
+    """Return the smoothed ranks p and 1 - p of new scores, shape (missions, scores); both are above 0.
 
-    `pool` holds the counts before the first of these missions, shape (scores, BINS). `bins` holds the bins of the new
-    scores, with -1 if a mission lacks a score. Each mission joins the pool after its ranking. `draws` are uniform on
-    (0, 1], one per mission. There may be at most TOGETHER missions.
+    - `pool`: counts before the first of these missions, shape (scores, BINS)
+    - `bins`: bins of the new scores; -1 where a mission lacks a score
+    - `draws`: uniform numbers on (0, 1], one per mission
+
+    Each mission joins the pool after it is ranked. There may be at most TOGETHER missions.
     """
     has, score = bins >= 0, np.arange(bins.shape[1])
     before = np.cumsum(pool, axis=1)
@@ -68,7 +69,7 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
 
 
 def _earlier(bins: Ints) -> tuple[Ints, Ints]:
-    """Count the earlier missions in the same bin and in smaller bins."""
+    """Count the earlier missions in the same bin, and those in smaller bins."""
     count, scores = bins.shape
     mine = np.full((scores, TOGETHER), BINS, np.int8)
     mine[:, :count] = bins.T
@@ -80,7 +81,7 @@ def _earlier(bins: Ints) -> tuple[Ints, Ints]:
 def _counted(found: NDArray[np.bool_]) -> Ints:
     """Count true values along the last axis, and transpose.
 
-    Eight bytes are added at a time; their sums stay below 256, so they do not overflow.
+    Eight bytes are added at a time; their sums stay below 256 and cannot overflow.
     """
     words = found.view(np.uint64)
     total = words[..., 0].copy()
@@ -90,7 +91,7 @@ def _counted(found: NDArray[np.bool_]) -> Ints:
 
 
 def joined(pool: Ints, bins: Ints) -> Ints:
-    """Return the pool (scores, BINS) plus the `bins` (missions, scores)."""
+    """Return the pool (scores, BINS) with the `bins` (missions, scores) added."""
     score = np.broadcast_to(np.arange(bins.shape[1]), bins.shape)
     has = bins >= 0
     added = np.bincount(score[has] * BINS + bins[has], minlength=pool.size)
@@ -98,12 +99,16 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 
 
 def factors(low: Floats, high: Floats, found: Floats) -> None:
-    """Write to `found` the factor by which each bet multiplies its stake, shape (missions, bets, scores).
+    """Write to `found` each bet's factor for its stake, shape (missions, bets, scores).
 
-    `low` and `high` are the ranks p and 1 - p, shape (missions, scores). Bets of the form εp^(ε-1) use three kinds of
-    p. With the rank as p, they win on small ranks. With 1 minus the rank as p, they win on large ranks. With twice the
-    distance from the rank to the nearer end of [0, 1] as p, they win on both. Bets of the form 1 ± (1 - 2p)/2, where p
-    is the rank, win on small shifts. Powers are computed by square roots, which round equally on all platforms.
+    `low` and `high` are the ranks p and 1 - p, shape (missions, scores). Bets of the form εq^(ε-1) win if q is small:
+
+    - q = p wins on small ranks.
+    - q = 1 - p wins on large ranks.
+    - q = twice the distance from p to the nearer end of [0, 1] wins on both.
+
+    Bets of the form 1 ± (1 - 2p)/2 win on small shifts. Powers are computed with square roots, which round equally on
+    all platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

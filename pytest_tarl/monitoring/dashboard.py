@@ -1,4 +1,4 @@
-"""The status of `tarl watch` as JSON (see `watch.schema.json`)."""
+"""Write the status of `tarl watch` as JSON (see `watch.schema.json`)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def write(document: dict[str, Any], path: Path) -> None:
 
 
 def line(document: dict[str, Any]) -> str:
-    """Return a document as one line of ASCII, harmless on terminals."""
+    """Return a document as one line of ASCII, which is safe to print on a terminal."""
     return json.dumps(document, allow_nan=False)
 
 
@@ -43,7 +43,7 @@ def schema() -> dict[str, Any]:
 def document(watch: Watch, status: Status) -> dict[str, Any]:
     """Return the status as JSON-compatible values.
 
-    Evidence is given as log10; an alarm is raised at -log10(alpha).
+    Evidence is given as log10; -log10(alpha) raises an alarm.
     """
     words = Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
     lead = status.lead

@@ -1,10 +1,10 @@
-"""Find the changed cells by the e-BH procedure, with one e-value per cell; valid at any time.
+"""Find the changed cells by the e-BH procedure, with one e-value per cell.
 
-An e-value measures evidence against a hypothesis: its expectation is at most 1 if the hypothesis is true. The ranks in
-one cell are independent of earlier ranks in that cell, but not of the ranks in other cells. Therefore, the running
-maximum of each cell's evidence is first adjusted, which keeps it an e-value in spite of this dependence (Choe & Ramdas
-2024). Then e-BH (Wang & Ramdas 2022) keeps the expected share of wrong cells among the named ones at α or less, under
-any dependence and at any time.
+An e-value measures evidence against a hypothesis: it is at most 1 on average if the hypothesis is true. A cell's ranks
+are independent of earlier ranks in that cell, but not of those in other cells. The running maximum of each cell's
+evidence is therefore adjusted first, so that it remains an e-value despite this dependence (Choe & Ramdas 2024). Then
+e-BH (Wang & Ramdas 2022) keeps the expected share of wrong cells among the reported ones at or below α, at any time and
+under any dependence.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pytest_tarl.learning.tables import Floats
 def adjusted(log_peak: NDArray[np.float64]) -> Floats:
     """Return log2 of the adjusted running maximum, (x - 1 - ln x) / ln² x, from log2 of x ≥ 1.
 
-    Input and result have the same shape. The function is the mean of the adjusters k·x^(1-k) over k in (0, 1). An
+    The result has the shape of the input. The function is the mean of the adjusters k·x^(1-k) over k in (0, 1). An
     adjuster is a function F with ∫ F(x)/x² dx ≤ 1 over [1, ∞).
     """
     natural = np.asarray(log_peak) * np.log(2.0)
@@ -33,7 +33,7 @@ def adjusted(log_peak: NDArray[np.float64]) -> Floats:
 def chosen(log_evidence: NDArray[np.float64], alpha: float) -> NDArray[np.bool_]:
     """Return which hypotheses e-BH rejects at the false discovery rate α, shape (cells,).
 
-    `log_evidence` holds log2 of the e-values, in the same shape.
+    `log_evidence` is log2 of the e-values, in the same shape.
     """
     count = len(log_evidence)
     if not count:

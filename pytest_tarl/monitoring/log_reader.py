@@ -19,24 +19,24 @@ from pytest_tarl.observing.log_format import MAGIC, next_record
 
 @dataclass
 class LogReader:
-    """A log that may grow, be rotated or be truncated, or that may not exist yet.
+    """A log that may grow, be rotated or truncated, or not exist yet.
 
-    `problem` is a sentence about the current problem of the log, or empty.
+    `problem` describes what is currently wrong with the log; it is empty if nothing is.
     """
 
     path: Path
     expected: Expected
-    known: Mapping[str, Progress]  # progress in each log that was ever read, by log ID
+    known: Mapping[str, Progress]  # progress in every log read so far, by log ID
     owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None
-    _ahead: bool = False  # whether the caller of `missions` stopped iterating before the last mission
+    _ahead: bool = False  # whether the caller of `missions` stopped before the last mission
 
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.
 
-        A rotated log is read to its end before the new log of the same name. Missions that the caller did not consume
-        are yielded again in the next call, if the caller keeps `known` up to date.
+        A rotated log is read to its end before the new log with the same name. If the caller does not consume all
+        missions, the next call yields the rest, provided that the caller keeps `known` up to date.
         """
         if self._ahead:
             self.close()
@@ -54,7 +54,7 @@ class LogReader:
         return None if self._open is None else self._open[1].progress
 
     def close(self) -> None:
-        """Close the file; reading resumes at the progress in `known`."""
+        """Close the file; reading resumes later at the progress in `known`."""
         if self._open is not None:
             file, assembly = self._open
             file.close()
@@ -82,7 +82,7 @@ class LogReader:
         return self._open
 
     def _begun(self, file: BinaryIO) -> Progress | None:
-        """Identify the log; return its progress, or None without a log."""
+        """Identify the log; return its progress, or None if there is no log."""
         magic = file.read(len(MAGIC))
         if not MAGIC.startswith(magic):
             self.problem = f"{self.path} is not a log of `tarl observe` of this version: name such a log."
@@ -110,8 +110,7 @@ class LogReader:
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
         """Return whether the log was rotated or truncated.
 
-        After a rotation, the path names another file. After a truncation, the file is shorter than the part already
-        read.
+        After a rotation, the path leads to another file. After a truncation, the file is shorter than what was read.
         """
         mine = os.fstat(file.fileno())
         try:
@@ -143,7 +142,7 @@ class LogReader:
 
 
 def _unchanged(file: BinaryIO, at: Progress) -> bool:
-    """Return whether the record that was read last is still in the file."""
+    """Return whether the last record that was read is still in the file."""
     file.seek(at.last)
     payload = next_record(file)
     if payload is None:

@@ -1,4 +1,4 @@
-"""A mission read from a log, and the progress through the log."""
+"""A mission read from a log, and how far the log was read."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from pytest_tarl.sensors import Cell
 class Progress(NamedTuple):
     """How far a log was read: up to `offset`.
 
-    The last record that was read begins at the offset `last`; `mark` identifies it by its length and checksum. `log`
-    identifies the log by its first record, so a renamed log is recognised. `refused` says why missions after the offset
-    cannot be compared with the recording; it is empty if they can.
+    The last record read starts at offset `last`; `mark` identifies it by length and checksum. `log` identifies the log
+    by its first record, so that a renamed log is recognised. `refused` says why later missions cannot be compared with
+    the recording; it is empty if they can.
     """
 
     log: str
@@ -34,10 +34,10 @@ class Progress(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The cells of a `steps` record; `rows` are their recorded rows and -1.
+    """The cells of a `steps` record; `rows` are their rows in the recording, or -1.
 
-    `new` holds the cells that the recording lacks. Tables are compared by identity, because comparing arrays gives no
-    single truth value.
+    `new` has the cells that are not in the recording. Tables are compared by identity, because comparing arrays does
+    not give a single truth value.
     """
 
     cells: list[Any]
@@ -50,9 +50,9 @@ Steps = tuple[Table, bytes, bytes]
 
 
 class Mission(NamedTuple):
-    """A finished mission, with its new cells and the log's progress.
+    """A finished mission, with its new cells and the progress of the log.
 
-    This run began to read the log at the progress `begun`, and has read up to the record at `last`.
+    This run started to read the log at `begun`, and has read up to the record at `last`.
     """
 
     passed: bool
@@ -66,12 +66,12 @@ class Mission(NamedTuple):
 
     @property
     def progress(self) -> Progress:
-        """Return how far the log has been read once this mission is included."""
+        """Return the log's progress after this mission."""
         return advanced(self.begun, self.last, self.missions, self.unfinished)
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return the progress `begun` with new counts, moved to the record `last` if given."""
+    """Return the progress `begun` with new counts and, if `last` is given, moved to that record."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted
@@ -79,13 +79,13 @@ def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int)
 
 
 def mark(spot: Spot) -> str:
-    """Return a string that identifies a record: its length and checksum."""
+    """Return a string that identifies a record by length and checksum."""
     _, length, checksum = spot
     return f"{length}:{checksum}"
 
 
 def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
-    """Return mission, cell row and reward of every step, each of shape (steps,)."""
+    """Return the mission, cell row and reward of every step, each of shape (steps,)."""
     pieces = [one for mission in missions for one in mission.steps]
     reward = np.frombuffer(b"".join([rewards for _, _, rewards in pieces]), "<f8").astype(np.float64)
     owner = np.repeat(np.arange(len(missions)), [len(mission.steps) for mission in missions])
@@ -97,6 +97,6 @@ def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
 
 
 def latest(missions: Sequence[Mission]) -> dict[str, Progress]:
-    """Return log ID → progress after its last mission."""
+    """Return log ID → progress after that log's last mission."""
     last = {one.begun.log: one for one in missions}
     return {log: one.progress for log, one in last.items()}

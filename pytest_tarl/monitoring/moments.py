@@ -17,7 +17,7 @@ class Moments:
     times: list[float] = field(default_factory=list)
 
     def add(self, first: int, times: Sequence[float]) -> None:
-        """Store start times of consecutive missions from number `first` on."""
+        """Store the start times of consecutive missions, the first of which is number `first`."""
         number = first + -first % self.stride
         while number < first + len(times):
             self.times.append(times[number - first])

@@ -1,7 +1,7 @@
-"""The monitor: an e-process for each bound, a conformal martingale for each score, and their alarms.
+"""The monitor: an e-process for each bound, a conformal martingale for each score, and the alarms.
 
 An e-process measures evidence that may be checked at any time. Two tests share α: whether performance is below the
-recorded bound, and whether missions differ from the recorded ones. Each test divides its half of α among its processes
+recorded bound, and whether missions differ from the recorded ones. Each divides its half of α among its processes
 (union bound). The probability of any false alarm is therefore at most α, plus the probability that a recorded bound is
 wrong.
 """
@@ -26,9 +26,9 @@ from pytest_tarl.monitoring.stated import Bound, bounds
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
-PORTION = 512  # number of missions scored at a time
-MOST_NEW = 256  # maximum number of cells in `Monitor.new`
-DRAWS = 4096  # number of random numbers drawn at a time
+PORTION = 512  # missions per scoring step
+MOST_NEW = 256  # maximum number of cells to keep in `Monitor.new`
+DRAWS = 4096  # random numbers per draw
 
 
 @dataclass
@@ -39,14 +39,14 @@ class Counts:
     passed: int = 0
     without_steps: int = 0
     without_rewards: int = 0
-    beyond_range: int = 0  # number of totals outside the declared range
+    beyond_range: int = 0  # totals outside the declared range
 
 
 @dataclass
 class Monitor:
     """The state of a watch.
 
-    The columns of `processes` are the bounds, then the scores; `pool` has shape (scores, BINS).
+    The columns of `processes` are the bounds, followed by the scores; `pool` has shape (scores, BINS).
     """
 
     scale: Scale
@@ -62,13 +62,13 @@ class Monitor:
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order, however they are batched."""
+        """Update with missions in order; how they are batched makes no difference."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
         """Update with missions in order; an unknown total is NaN, and `time`, of shape (missions,), is in seconds.
 
-        Cells of the scale have their numbers there. All other cells share the next number and are listed in `new`.
+        Cells of the scale have their numbers in it. All other cells share the next number and are listed in `new`.
         """
         self.moments.add(self.counts.missions, time.tolist())
         self.judge(sample.passed, sample.total, binned(self.scale, sample))
@@ -91,13 +91,13 @@ class Monitor:
         self.counts.passed += int(passed.sum())
 
     def draws(self, first: int, count: int) -> Floats:
-        """Return a tie-breaking number in (0, 1] for each of `count` missions from `first` on, shape (count,).
+        """Return a number in (0, 1] for breaking ties, for each of `count` missions from `first` on.
 
-        The numbers depend only on the seed and the index of the mission.
+        They depend only on the seed and the index of the mission.
         """
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
-            drawn = self.drawn  # read once, because threads may share a monitor
+            drawn = self.drawn  # read once, because several threads may use the monitor
             if drawn[0] != which:
                 drawn = self.drawn = which, 1.0 - generator(self.seed, f"watch/{which}").random(DRAWS)
             begin = which * DRAWS
@@ -112,7 +112,7 @@ class Monitor:
         time: Floats,
         new: Sequence[Cell] = (),
     ) -> None:
-        """Count missions whose processes bet_updates.py has already updated; all arrays have shape (missions,)."""
+        """Count missions with which bet_updates.py already updated the processes; all arrays have shape (missions,)."""
         self.moments.add(self.counts.missions, time.tolist())
         self.counts.missions += len(passed)
         self.counts.passed += int(passed.sum())
@@ -145,8 +145,8 @@ def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
 def shares(stated: int, scores: int) -> Floats:
     """Return the shares of α, shape (processes,).
 
-    Half of α goes to the bounds, if there are any. Of the rest, one half goes to the scores of whole missions and one
-    half to the scores of cells.
+    Half of α goes to the bounds, if there are any. The rest is divided equally between the scores of whole missions and
+    the scores of cells.
     """
     cells = scores - len(WHOLE)
     rest = 0.5 if stated else 1.0

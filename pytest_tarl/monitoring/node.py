@@ -1,4 +1,4 @@
-"""A watch as a ROS node that publishes on /diagnostics."""
+"""Run a watch as a ROS node that publishes on /diagnostics."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ TOPIC = "/diagnostics"
 NAME = "tarl_watch"
 OK, WARN, ERROR = 0, 1, 2  # levels of DiagnosticStatus
 
-NOTICED = 0.5  # maximum delay between a signal and the end of the watch (s)
+NOTICED = 0.5  # maximum time between a signal and the end of the watch (s)
 
-Look = Callable[[], tuple[bool, Watch, Status]]  # returns whether to continue, the watch and its status
+Look = Callable[[], tuple[bool, Watch, Status]]  # returns whether to continue, the watch, and its status
 
 
 def run(library: str, look: Look, period: float, stopped: Event) -> None:
     """Read the logs every `period` seconds of ROS time and publish the status.
 
-    End when a signal handler sets `stopped` or when ROS shuts the node down. ROS's own signal handlers are not
-    installed, because they would shut the node down in the middle of a publish call. Raise SettingsError if the library
-    or the message package is not installed.
+    Stop when a signal handler sets `stopped` or when ROS shuts the node down. ROS's own signal handlers are not
+    installed: they would shut the node down in the middle of a publish call. Raise SettingsError if the library or the
+    message package is not installed.
     """
     try:
         ros, messages = import_module(library), import_module("diagnostic_msgs.msg")
@@ -43,7 +43,7 @@ def run(library: str, look: Look, period: float, stopped: Event) -> None:
 def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_level: bool) -> Any:
     """Return the status as a message: WARN if the world changed, ERROR if a bound is violated.
 
-    `bytes_level` is true if levels are bytes, as in ROS 2, and false if they are numbers, as in ROS 1.
+    `bytes_level` says whether levels are bytes, as in ROS 2, or numbers, as in ROS 1.
     """
     level = ERROR if status.below else WARN if status.drifted else OK
     entry = messages.DiagnosticStatus()
@@ -61,7 +61,7 @@ def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_leve
 def values(watch: Watch, status: Status) -> list[tuple[str, str]]:
     """Return the status as keys and values.
 
-    Evidence is given as log10; an alarm is raised at -log10(alpha).
+    Evidence is given as log10; -log10(alpha) raises an alarm.
     """
     found = [
         ("missions", str(status.missions)),

@@ -1,19 +1,18 @@
-"""Many e-processes in parallel; each is a mixture over bets and over start times, one before each mission.
+"""Many e-processes in parallel, each a mixture over bets and start times (one before each mission).
 
-A bet k multiplies its stake by a factor f ≥ 0 whose mean is at most 1. If the bet starts before observation τ, its
-value is 1 before τ, and the product of all f_t with t ≥ τ afterwards. A mixture over k and τ with weights that sum to 1
-is again an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors). By Ville's inequality, the probability that it ever
-exceeds 1/α is at most α. Although there is a start before every observation, each observation costs only one product,
-since
+Bet k multiplies its stake by a factor f ≥ 0 whose mean is at most 1. If the bet starts before observation τ, its value
+is 1 before τ, and the product of all f_t with t ≥ τ afterwards. A mixture over k and τ whose weights sum to 1 is again
+an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors). By Ville's inequality, it ever exceeds 1/α with a probability
+of at most α. Although there is a start before every observation, each observation costs only one product, because
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 
-Half of the weight is on a start before the first observation. The other half is spread over later starts; from one
-octave of τ to the next, the weight falls by the factor 2^(-1/8). If a change comes only after 100,000 missions, the
-natural logarithm of the evidence is therefore lower by only about 15.
+Half of the weight is on a start before the first observation. The other half is spread over later starts: from one
+octave of τ to the next, the weight falls by a factor of 2^(-1/8). A change that comes only after 100,000 missions
+therefore costs only about 15 in the natural logarithm of the evidence.
 
-Only sums, products and square roots are used, which IEEE 754 rounds equally on all platforms: equal observations give
-equal bits, no matter how they are divided into portions.
+Only sums, products and square roots are used, which IEEE 754 rounds equally on all platforms. Equal observations
+therefore give equal bits, no matter how they are divided into portions.
 """
 
 from __future__ import annotations
@@ -26,10 +25,10 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats, Ints
 
-BETS = 12  # number of bets that one evidence process makes side by side
+BETS = 12  # number of bets per evidence process
 LARGE = 600  # stakes above 2^LARGE are scaled down; a single factor is below 2^70
-# Stakes are scaled down only after a multiple of this number of missions, so that the result does not depend on how
-# missions are divided into calls.
+# Stakes are scaled down only after a multiple of this many missions, so that the result does not depend on how missions
+# are divided into calls.
 LOOK = 4
 
 
@@ -37,11 +36,15 @@ LOOK = 4
 class Processes:
     """The state of several e-processes, one per column.
 
-    `stake`, `best` and `since` have shape (bets, processes), the others (processes,). `stake` is Σ_τ w_τ ∏f, and `best`
-    is the largest term of that sum; both are divided by 2^exponent. `since` is the mission before which the largest
-    term started. `age` is the number of observations. `peak` is log2 of the largest evidence so far. `onset` is the
-    value of `since` for the largest term when the evidence was at this peak. `alarm` is the mission at which the
-    evidence reached `threshold`, or -1.
+    The arrays have shape (processes,), except for `stake`, `best` and `since`: (bets, processes).
+
+    - `stake`: Σ_τ w_τ ∏f, divided by 2^exponent
+    - `best`: the largest term of this sum, divided by 2^exponent
+    - `since`: the mission before which this term started
+    - `age`: number of observations
+    - `peak`: log2 of the largest evidence so far
+    - `onset`: `since` of the largest term at the time of this peak
+    - `alarm`: the mission at which the evidence reached `threshold`, or -1
     """
 
     stake: Floats
@@ -52,7 +55,7 @@ class Processes:
     peak: Floats
     onset: Ints
     alarm: Ints
-    threshold: Floats  # log2 of the evidence that raises an alarm
+    threshold: Floats  # log2 of the evidence at which an alarm is raised
 
     @property
     def count(self) -> int:
@@ -61,7 +64,7 @@ class Processes:
 
 
 def begun(threshold: Floats) -> Processes:
-    """Return new processes; `threshold` is log2 evidence, shape (processes,)."""
+    """Return new processes; `threshold` is log2 of the evidence, shape (processes,)."""
     count = len(threshold)
     return Processes(
         stake=np.zeros((BETS, count)),
@@ -77,7 +80,7 @@ def begun(threshold: Floats) -> Processes:
 
 
 def reserve(age: NDArray[np.int64]) -> Floats:
-    """Return the total weight of future restarts after `age` observations: 1 for age 0, then ½·age^(-1/8).
+    """Return the total weight of later starts after `age` observations: 1 at age 0, then ½·age^(-1/8).
 
     The result has the shape of `age`.
     """
@@ -93,12 +96,12 @@ def advance(
     ends: Ints | None = None,
     onsets: bool = True,
 ) -> None:
-    """Update with consecutive missions, the first of which has the number `first`.
+    """Update with consecutive missions, starting with number `first`.
 
-    `taken`, shape (missions, processes), says whether a mission has an observation for a process. `factors`, shape
-    (missions, bets, processes), multiply the stakes; a factor is 1 where there is no observation. If processes have
-    different numbers of missions, `ends`, shape (processes,), holds these numbers, and the rows after them are padding.
-    Without `onsets`, `best`, `since` and `onset` are not updated, which halves the time.
+    - `taken`, shape (missions, processes): whether a mission has an observation for a process
+    - `factors`, shape (missions, bets, processes): factors for the stakes; 1 where there is no observation
+    - `ends`, shape (processes,): the number of missions per process, if they differ; later rows are padding
+    - `onsets`: False leaves `best`, `since` and `onset` unchanged, which halves the time
     """
     rows = np.flatnonzero(taken.any(axis=0))
     if not rows.size:
@@ -123,9 +126,9 @@ def advance(
 
 @dataclass(frozen=True)
 class _Products:
-    """The sums of the stakes over the bets after each mission, and their exponents, each of shape (missions, rows).
+    """The sums of the stakes over the bets after each mission, with exponents; each of shape (missions, rows).
 
-    For each mission, `added`, `multiplied` and `shrinks` are the operands of three operations on all stakes, in this
+    `added`, `multiplied` and `shrinks` are the operands of three operations on all stakes for each mission, in this
     order.
     """
 
@@ -141,8 +144,8 @@ def _multiplied(
 ) -> _Products:
     """Update the stakes mission by mission.
 
-    The first row of the local array `stake` holds the stakes of all bets and processes before the first mission, and
-    each further row those after a mission.
+    The first row of the local array `stake` has the stakes of all bets and processes before the first mission; each
+    further row has the stakes after one mission.
     """
     count, shape = len(weight), (len(weight), BETS, len(rows))
     exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)
@@ -170,7 +173,7 @@ def _multiplied(
 
 
 def _started(processes: Processes, rows: Ints, products: _Products, first: int, evidence: Floats) -> None:
-    """Update the largest term of each stake, and the mission before which this term started.
+    """Update the largest term of each stake, and the mission before which that term started.
 
     `evidence`, shape (missions, rows), is log2 of the evidence after each mission.
     """
@@ -196,13 +199,13 @@ def _started(processes: Processes, rows: Ints, products: _Products, first: int, 
 
 
 def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
-    """Return each column's last mission with `fresh`, or `earlier`."""
+    """Return, for each column, the last mission with `fresh`, or `earlier` if there is none."""
     last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
     return np.where(fresh.any(axis=0), last, earlier)
 
 
 def _summed(stake: Floats) -> Floats:
-    """Sum stakes (missions, bets, processes) over bets in a fixed order."""
+    """Sum stakes (missions, bets, processes) over the bets in a fixed order."""
     total: Floats = stake[:, 0] + stake[:, 1]
     for bet in range(2, BETS):
         total += stake[:, bet]

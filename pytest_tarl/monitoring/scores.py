@@ -1,7 +1,7 @@
-"""Compute scores of new missions, to compare them with the scores of held-out recorded missions.
+"""Score new missions, for comparison with the scores of held-out recorded missions.
 
-The model is fitted to one half of the recorded episodes. The scores of the other half are the initial pools. New
-missions are rounded as in a recording, so that their scores are exchangeable with the recorded scores.
+The model is fitted to one half of the recorded episodes; the scores of the other half are the initial pools. New
+missions are rounded as in a recording, so that their scores are exchangeable with the recorded ones.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.monitoring.conformal import BINS, edges
 from pytest_tarl.sensors import Cell
 
-# the scores of a whole mission; the scores of the mission's cells follow them
+# the scores of a whole mission; the scores of its cells follow
 WHOLE = ("success", "total", "residual", "unknown", "steps")
 FEWEST = 2  # minimum number of episodes in each half of a recording
 
@@ -31,8 +31,8 @@ FEWEST = 2  # minimum number of episodes in each half of a recording
 class Missions:
     """Missions in order; the columns of steps have shape (steps,).
 
-    `cell` is the row of a step's cell in the scale's table of cells. It is the number of rows if the cell is not in the
-    table, and -1 while any sensor has no value yet. A mission may have no steps.
+    `cell` is the row of a step's cell in the scale's table of cells. It is the number of rows for a cell that is not in
+    the table, and -1 as long as some sensor has no value. A mission may have no steps.
     """
 
     passed: NDArray[np.bool_]
@@ -50,10 +50,10 @@ class Missions:
 
 @dataclass(frozen=True)
 class Scale:
-    """The fitted model, its cells and the bin edges, shape (scores, BINS - 1)."""
+    """The fitted model, its cells, and the bin edges of shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    # whether the model was fitted for a cell; the last entry (False) stands for all other cells
+    # whether the model was fitted for each cell; the last entry (False) is for all other cells
     known: NDArray[np.bool_]
     model: Model
     edges: Floats
@@ -84,7 +84,7 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
     wide = replace(
         sample, cells=(*sample.cells, ())
-    )  # the additional cell gives the layout of new missions, so sums are rounded equally
+    )  # sums are rounded as for new missions, whose layout has this additional cell
     values = _values(bare, wide)
     units = _units(chain, int(fit.sum()), count)
     found = [
@@ -95,9 +95,9 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
 
 
 def binned(scale: Scale, sample: Sample) -> Ints:
-    """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission lacks the score.
+    """Return the bin of every score of every mission, shape (missions, scores); -1 for a missing score.
 
-    A mission without steps has only the score for its success. A mission without rewards lacks all scores that need
+    A mission without steps has only a score for its success. A mission without rewards lacks all scores that need
     rewards.
     """
     return _binned(scale, _values(scale, sample))
@@ -112,7 +112,7 @@ def _binned(scale: Scale, values: Floats) -> Ints:
 
 
 def _values(scale: Scale, sample: Sample) -> Floats:
-    """Return the scores, shape (missions, scores); NaN if a mission lacks the score.
+    """Return the scores, shape (missions, scores); NaN for a missing score.
 
     The score of a cell is its mean residual per visit.
     """
@@ -138,9 +138,9 @@ def _values(scale: Scale, sample: Sample) -> Floats:
 
 
 def _units(chain: Chain, episodes: int, cells: int) -> Floats:
-    """Return the magnitude of the terms that are summed in each score, shape (scores,).
+    """Return the magnitude of the terms that each score sums, shape (scores,).
 
-    The rounding errors of a score are proportional to it.
+    A score's rounding errors are proportional to it.
     """
     size = float(np.abs(chain.reward).sum())
     mission, step = size / max(1, episodes), size / max(1, int(chain.count.sum()))
@@ -149,9 +149,9 @@ def _units(chain: Chain, episodes: int, cells: int) -> Floats:
 
 
 def sampled(scale: Scale, missions: Missions) -> Sample:
-    """Return missions in the form of recorded episodes; all cells that the scale lacks become one additional cell.
+    """Return missions in the form of recorded episodes, with one additional cell for all cells that the scale lacks.
 
-    The total of a mission is NaN if it has no steps or an unknown reward.
+    A mission's total is NaN if it has no steps or an unknown reward.
     """
     known = missions.cell >= 0
     reward = np.where(np.isfinite(missions.reward), missions.reward, 0.0)[known]

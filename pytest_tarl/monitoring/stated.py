@@ -1,4 +1,4 @@
-"""The bounds of a recording: least success rate and least mean reward."""
+"""The bounds that a recording states: minimum success rate and minimum mean reward."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pytest_tarl.model import Bound as Rate
 class Bound:
     """A lower bound on the mean of a quantity within [low, high].
 
-    `what` is "success" or "total". `confidence` is the probability, over repeated recordings, that the bound holds.
+    `what` is "success" or "total". `confidence` is the share of repeated recordings whose bound holds.
     """
 
     what: str
@@ -33,10 +33,10 @@ class Bound:
 
 
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
-    """Return the bounds of a recording: of success, and of the mean total if its range was declared.
+    """Return the bounds of a recording: on success and, if the marker declared a range, on the mean total.
 
-    There are no bounds if all episodes are equal, because equal episodes do not show how much episodes can vary.
-    Recordings of older versions state no bounds; then the bound of success is computed from the episodes.
+    If all episodes are equal, there are no bounds, because equal episodes do not show how much episodes vary.
+    Recordings of older versions state no bounds; for these, the bound on success is computed from the episodes.
     """
     told = fixture.stated
     if told is None:

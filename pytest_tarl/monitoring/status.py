@@ -13,14 +13,14 @@ from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
-# indices of the bets on low and on high ranks; other bets are on both extremes
+# indices of the bets on low and on high ranks; the other bets are on both extremes
 LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)
-FEWEST_NEW = 2  # minimum number of missions in a new cell that the status names
+FEWEST_NEW = 2  # a new cell is listed if at least this many missions visited it
 
 
 @dataclass(frozen=True)
 class Moment:
-    """A mission's number from 1, and its start in seconds since 1970 or None."""
+    """The number of a mission (from 1), and its start in seconds since 1970 or None."""
 
     mission: int
     time: float | None
@@ -28,9 +28,9 @@ class Moment:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The current and the largest evidence against one hypothesis, as log10; an alarm is raised at -log10(α).
+    """The current and largest evidence against a hypothesis, as log10; -log10(α) raises an alarm.
 
-    The difference probably began just before the mission `since`. `alarm` is the mission that raised the alarm.
+    The difference probably began just before mission `since`. `alarm` is the mission that raised the alarm.
     """
 
     now: float
@@ -50,7 +50,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Status:
-    """The status of a watch; unviolable bounds have no evidence."""
+    """The status of a watch; bounds that cannot be violated have no evidence."""
 
     missions: int
     passed: int
@@ -135,7 +135,7 @@ def _moment(monitor: Monitor, number: int) -> Moment:
 
 
 def _lead(monitor: Monitor, rows: Ints) -> Score | None:
-    """Return the score with the most evidence, or None if there is none."""
+    """Return the score with the most evidence, or None."""
     if not rows.size:
         return None
     processes = monitor.processes

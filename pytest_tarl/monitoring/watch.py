@@ -1,4 +1,4 @@
-"""A watch of growing logs, with a monitor and a saved state."""
+"""Watch growing logs, with a monitor whose state is saved."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
 
-SAVED = 1.0  # time between two saves of the state while missions are left to read (s)
+SAVED = 1.0  # seconds between two saves of the state while missions are left to read
 
 
 @dataclass
 class Watch:
-    """The watched logs; `known` is the progress in each log, by log ID."""
+    """The watched logs; `known` is the progress in each, by log ID."""
 
     fixture: Fixture
     digest: str
@@ -39,9 +39,10 @@ class Watch:
     known: dict[str, Progress]
 
     def poll(self) -> Iterator[None]:
-        """Count the missions that ended since the last call, in the order of their times.
+        """Count the missions that ended since the last call, in order of time.
 
-        Yield after each portion. Save the state every `SAVED` seconds and at the end. Raise MonitorError if that fails.
+        Yield after each portion. Save the state every `SAVED` seconds and at the end. Raise MonitorError if it cannot
+        be saved.
         """
         logs = [one.missions() for one in self.readers]
         coming = logs[0] if len(logs) == 1 else heapq.merge(*logs, key=lambda mission: mission.time)
@@ -80,7 +81,7 @@ class Watch:
 
 
 def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed: int) -> Watch:
-    """Return a watch that resumes from its state file, or a new watch if there is no such file.
+    """Return a watch that continues from its state file; without such a file, return a new watch.
 
     Raise FixtureError or MonitorError if the recording or the state cannot be used.
     """

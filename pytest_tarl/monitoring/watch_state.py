@@ -1,6 +1,7 @@
-"""The state of a watch on disk: a small file, written atomically, from which the watch resumes.
+"""Save the state of a watch to a small file, atomically, so that the watch can resume.
 
-A `.npz` without pickle, like a recording: a JSON header with a hash, and the columns of the processes and the pool.
+The file is a `.npz` without pickle, like a recording: a JSON header with a hash, the columns of the processes, and the
+pool.
 
 FORMAT history:
 1  First version.
@@ -48,7 +49,7 @@ _UNREADABLE = (
 
 
 def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: str) -> None:
-    """Write the state and the recording's hash `fixture` atomically. Raise MonitorError."""
+    """Write the state and the recording's hash `fixture`, atomically. Raise MonitorError."""
     columns = _columns(monitor)
     header: dict[str, Any] = {
         "kind": KIND,
@@ -77,9 +78,9 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
 def load(
     path: Path, fixture: Fixture, digest: str, *, alpha: float, seed: int
 ) -> tuple[Monitor, dict[str, Progress]]:
-    """Return the monitor and the progress in its logs from a state file, or a new monitor if there is no file.
+    """Return the monitor and the progress in its logs; without a state file, a new monitor.
 
-    Raise MonitorError if the file is damaged or belongs to another recording, α or seed. Raise FixtureError if the
+    Raise MonitorError if the file is damaged, or belongs to another recording, α or seed. Raise FixtureError if the
     recording has too few episodes.
     """
     fresh = begun(fixture, alpha=alpha, seed=seed)

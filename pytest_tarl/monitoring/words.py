@@ -43,7 +43,7 @@ def lines(watch: Watch, status: Status) -> Iterator[str]:
 
 
 def headline(watch: Watch, status: Status) -> str:
-    """Return the status in one line, for logs and diagnostics."""
+    """Return the status as one line, for logs and diagnostics."""
     parts = [f"{_missions(status.missions)}, {_passed(status)}"]
     for bound, evidence in status.bounds:
         if evidence is not None:
@@ -55,7 +55,7 @@ def headline(watch: Watch, status: Status) -> str:
 
 
 def vocabulary(watch: Watch, status: Status) -> Vocabulary:
-    """Return the vocabulary that names cells in words."""
+    """Return the vocabulary for describing cells in words."""
     return Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
 
 
