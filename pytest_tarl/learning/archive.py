@@ -14,24 +14,24 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # number of unpacked bytes allowed for every file
-RATIO = 100  # number of further unpacked bytes allowed per byte of a file; recordings need 2 to 20
-# memory per unpacked byte while a recording is read (bytes; benchmarks/limits.py, case recording)
+FREE = 256_000_000  # unpacked bytes allowed for any file
+RATIO = 100  # additional unpacked bytes allowed per byte of the file; recordings need 2 to 20
+# bytes of memory needed per unpacked byte to read a recording (benchmarks/limits.py, case recording)
 NEEDED = 9
 KINDS = "biuf"  # numpy kinds: booleans, integers and floats
 ENDING = ".npy"
 
 
 class DamagedError(ValueError):
-    """Raised if an archive is not a valid recording; the argument is the reason, as a clause without a full stop."""
+    """The archive is not a valid recording; the argument is the reason, as a clause without a full stop."""
 
 
 class TooLargeError(ValueError):
-    """Raised if there is too little memory to read an archive; the argument is a clause that states the need."""
+    """There is too little memory to read an archive; the argument is a clause that says how much is needed."""
 
 
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
-    """Return the arrays by name, in the shapes that the file states.
+    """Return the arrays by name, in the shapes given in the file.
 
     Raise TooLargeError before unpacking if there is too little memory, and DamagedError if the archive is not valid.
     Damaged zip and npy headers raise other exceptions.
@@ -55,7 +55,7 @@ def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
 
 
 def numbers(arrays: Mapping[str, NDArray[Any]], name: str, *shape: int | None) -> NDArray[Any]:
-    """Return an array; None in `shape` allows any length.
+    """Return an array; in `shape`, None stands for any length.
 
     Raise DamagedError if the array is missing or has another shape.
     """

@@ -1,4 +1,4 @@
-"""Learn the bins of a sensor as quantiles of its values, so that all bins hold about equally many values."""
+"""Learn the bins of a sensor as quantiles, so that all bins have about equally many values."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ DIGITS = 4  # edges are rounded to this many digits, relative to the range of th
 def learned_edges(
     sensors: Iterable[Sensor], read: Mapping[str, Sequence[float]]
 ) -> dict[str, tuple[float, ...]]:
-    """Return the edges of each sensor whose bins are to be learned; `read` holds the values of each sensor.
+    """Return the edges of each sensor whose bins are learned; `read` has the values of each sensor.
 
-    Raise RecordingError if a sensor has no value or always the same one.
+    Raise RecordingError if a sensor has no values, or only equal ones.
     """
     return {s.name: quantiles(s.name, read.get(s.name, ()), s.bins or 1) for s in sensors if s.to_learn}
 
 
 def quantiles(name: str, values: Sequence[float], bins: int) -> tuple[float, ...]:
-    """Return ascending edges of at most `bins` bins.
+    """Return the ascending edges of at most `bins` bins.
 
-    Raise RecordingError if there is no value or all values are equal.
+    Raise RecordingError if there are no values, or only equal ones.
     """
     known = np.array([value for value in values if math.isfinite(value)])
     spread = float(np.ptp(known)) if known.size else 0.0

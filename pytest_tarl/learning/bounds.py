@@ -1,7 +1,8 @@
 """Compute bounds for future episodes of a world: success rate, mean and quantiles of the total reward, loss.
 
-Each bound assumes that episodes are drawn independently from one world. Each bound holds on its own. If several bounds
-are used, the probability that any of them is wrong is at most the sum of their risks. Further assumptions:
+Every bound assumes that episodes are drawn independently from one world. The stated confidence is that of a single
+bound. With several bounds, the probability that any of them is wrong is at most the sum of their risks. Further
+assumptions:
 
     rate          nothing                                       exact (Clopper & Pearson 1934)
     mean_of       totals lie in a declared range                exact (betting; Waudby-Smith & Ramdas 2023, Theorem 3)
@@ -12,11 +13,11 @@ are used, the probability that any of them is wrong is at most the sum of their 
                                                                 approximate (Welch) if one of them varies more
     detectable    -                                             approximate (normal)
 
-An acceptance test only needs to know whether a mean is above a limit; learning/betting.py tests this exactly. No other
-module computes an interval or a quantile (tests/plugin/learning/test_bounds_are_one_place.py). A search uses
-approximate bounds only to choose and rank its candidates, never for a guarantee.
+An acceptance test only needs to know whether a mean is above a limit; learning/betting.py tests this exactly. All
+intervals and quantiles are computed in this module (tests/plugin/learning/test_bounds_are_one_place.py checks this). A
+search uses approximate bounds only to choose and rank candidates, never for a guarantee.
 
-"Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. If the number
+"Exact" means at least the stated confidence, for any number of episodes that was fixed in advance. If the number
 depends on the results, use `rate_sequence` or `mean_of` with `anytime`, which hold after every episode.
 benchmarks/bound_coverage.py measures how often each bound holds.
 """
@@ -38,28 +39,28 @@ from pytest_tarl.learning.student import difference_bounds, mean_bounds
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
 
-POWER = 0.8  # probability of detecting the smallest detectable loss
-STAKE = 0.75  # maximum share of the wealth lost in one bet; the truncation c of Waudby-Smith & Ramdas
+POWER = 0.8  # probability with which the smallest detectable loss is detected
+STAKE = 0.75  # maximum share of the wealth to lose in one bet; the truncation c of Waudby-Smith & Ramdas
 
 
 class Range(NamedTuple):
-    """Declared limits of the total reward of every episode."""
+    """The declared limits of every episode's total reward."""
 
     low: float
     high: float
 
 
 def rate(passed: int, episodes: int, confidence: float) -> Bound:
-    """Return one-sided Clopper-Pearson bounds on a success rate, each at the confidence."""
+    """Return one-sided Clopper-Pearson bounds on a success rate, each at this confidence."""
     risk = 1.0 - confidence
     low = rate_low(passed, episodes, risk)
     high = 1.0 - rate_low(episodes - passed, episodes, risk)
     return Bound(low, high, confidence, "Clopper-Pearson", True, episodes)
 
 
-@lru_cache(maxsize=4096)  # a stress search calls this with the same few counts thousands of times
+@lru_cache(maxsize=4096)  # a stress search asks for the same few counts thousands of times
 def rate_low(passed: int, episodes: int, risk: float) -> float:
-    """Return the success rate at which the probability of `passed` or more passes is `risk`."""
+    """Return the success rate for which `passed` or more passes have the probability `risk`."""
     if passed <= 0:
         return 0.0
     if passed == episodes:
@@ -69,7 +70,7 @@ def rate_low(passed: int, episodes: int, risk: float) -> float:
 
 
 def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
-    """Return one-sided bounds on a success rate that hold simultaneously after every episode."""
+    """Return one-sided bounds on a success rate that hold after every episode simultaneously."""
     risk = 1.0 - confidence
     low = _sequence_low(passed, episodes, risk)
     high = 1.0 - _sequence_low(episodes - passed, episodes, risk)
@@ -77,11 +78,11 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def evidence_above(passed: int, episodes: int, least: float) -> float:
-    """Return the logarithm of an e-process against the claim that the success rate is at most `least`.
+    """Return the log of an e-process against the claim that the success rate is at most `least`.
 
-    An e-process measures evidence and may be read at any time. If the claim is true, the probability that the log ever
-    exceeds log(1 / α) is at most α (Ville's inequality). This e-process averages the likelihood ratio uniformly over
-    all higher rates (Robbins 1970).
+    An e-process measures evidence and may be read at any time. If the claim is true, its log ever exceeds log(1 / α)
+    with a probability of at most α (Ville's inequality). This one averages the likelihood ratio uniformly over all
+    higher rates (Robbins 1970).
     """
     failed = episodes - passed
     if least >= 1.0:
@@ -99,10 +100,10 @@ def evidence_above(passed: int, episodes: int, least: float) -> float:
 def mean_of(
     totals: Sequence[float], confidence: float, declared: Range | None = None, *, anytime: bool = False
 ) -> Bound:
-    """Return one-sided bounds on a mean, each at the confidence; exact if the range is declared.
+    """Return one-sided bounds on a mean, each at this confidence; exact if the range is declared.
 
-    With `anytime`, they hold simultaneously after every episode. A betting bound can exceed the observed mean if a bet
-    won early; the bound is then clipped to the mean. Raise ValueError if a total lies outside the range.
+    With `anytime`, they hold after every episode simultaneously. A betting bound can exceed the observed mean if a bet
+    won early; it is then clipped to the mean. Raise ValueError if a total is outside the range.
     """
     values = np.asarray(totals, dtype=np.float64)
     if declared is None:
@@ -126,8 +127,8 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
     """Return a lower bound on the mean of `values` in [0, 1], shape (episodes,).
 
     For each candidate mean m, a bet stakes λ on values above m. If m is the true mean, the wealth of this bet is a
-    martingale, so it rarely reaches 1 / risk. The bound is the largest m whose bet reached that wealth. λ depends only
-    on earlier values. λ is tuned for the given number of values; with `anytime`, for any number.
+    martingale and rarely reaches 1 / risk. The bound is the largest m whose bet did reach it. λ depends only on earlier
+    values. It is tuned for the given number of values or, with `anytime`, for any number.
     """
     if not values.size:
         return 0.0
@@ -146,9 +147,9 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
 
 
 def quantile_low(totals: Sequence[float], share: float, confidence: float) -> float | None:
-    """Return a total that at least the share 1 - `share` of all episodes reaches, or None with too few episodes.
+    """Return a total that at least the share 1 - `share` of all episodes reaches; None if there are too few.
 
-    The bound is the k-th smallest total, for the largest k with P(Bin(n, share) < k) ≤ 1 - confidence.
+    The bound is the k-th smallest total for the largest k with P(Bin(n, share) < k) ≤ 1 - confidence.
     """
     ordered = sorted(totals)
     below = np.cumsum(probabilities(len(ordered), share))
@@ -157,19 +158,22 @@ def quantile_low(totals: Sequence[float], share: float, confidence: float) -> fl
 
 
 def episodes_for_quantile(share: float, confidence: float) -> int:
-    """Return the smallest number of episodes whose lowest total bounds the quantile `share` at the confidence."""
+    """Return how many episodes are needed for their lowest total to bound the quantile `share`."""
     return ceil(log(1.0 - confidence) / log1p(-share) - 1e-9)
 
 
 def loss_between(
     offline: Sequence[float], online: Sequence[float], confidence: float, declared: Range | None = None
 ) -> Bound:
-    """Return one-sided bounds on mean(offline) - mean(online), each at the confidence.
+    """Return one-sided bounds on mean(offline) - mean(online), each at this confidence.
 
-    Without a declared range, the result is the wider of two intervals. The first interval contains the shifts that a
-    studentised permutation test does not reject (Janssen 1997). It is exact if the totals of both worlds differ by a
-    constant, even if the totals are skewed. The second one is Welch's interval, for totals that are about normal and
-    may vary more in one world. Raise ValueError if a total lies outside the declared range.
+    Without a declared range, the result is the wider of two intervals:
+
+    - The shifts that a studentised permutation test does not reject (Janssen 1997). This interval is exact if the
+      totals of both worlds differ by a constant, even if they are skewed.
+    - Welch's interval, for totals that are about normal and may vary more in one world.
+
+    Raise ValueError if a total is outside the declared range.
     """
     episodes = min(len(offline), len(online))
     if declared is None:
@@ -186,10 +190,10 @@ def loss_between(
 def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
     """Return the loss that a test at `risk` detects with probability POWER; inputs have shape (episodes,).
 
-    The result is a normal approximation. It is infinite if the episodes have so few permutations that no loss can be
-    significant.
+    This is a normal approximation. It is infinite if there are so few episodes, and thus permutations, that no loss can
+    be significant.
     """
-    if comb(offline.size + online.size, online.size) <= 1 / risk:  # integers, since a float would overflow
+    if comb(offline.size + online.size, online.size) <= 1 / risk:  # integers, because a float would overflow
         return inf
     spread = np.sqrt(sum(one.var(ddof=1) / one.size for one in (offline, online) if one.size > 1))
     normal = NormalDist()

@@ -1,9 +1,9 @@
 """Compare two worlds: test for a loss of performance and for a drift, and find the cells that differ.
 
-The designed world is the recorded one (`offline`), and the deployed world is the one compared with it (`online`). A
-cell is a combination of sensor bins. The drift test compares Bellman residuals. A residual is the difference between
-what a step brings and what the recorded utility predicts for it. Whole episodes are permuted. P-values are corrected
-over all columns by the largest statistic.
+The designed world is the recorded one (`offline`); the deployed world is compared with it (`online`). A cell is a
+combination of sensor bins. The drift test compares Bellman residuals: the difference between what a step earns and what
+the recorded utility predicts for it. It permutes whole episodes, and corrects p-values over all columns by the largest
+statistic.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from pytest_tarl.sensors import Cell, Sensor
 
 # minimum difference of a cell in the region, as a share of the largest significant difference
 MATERIAL = 0.1
-PASS_RATE_LOSS = 0.05  # tolerated decrease of the share of successful missions
+PASS_RATE_LOSS = 0.05  # tolerated decrease of the success rate
 
 
 @dataclass(frozen=True)
 class Difference:
     """The result of comparing two samples of episodes.
 
-    `changes` holds, for each cell, how much one part of the residual differs between the worlds. It is the part (move
-    or reward) that determined the region.
+    For each cell, `changes` is the difference between the worlds in one part of the residual (move or reward): the part
+    that determined the region.
     """
 
     verdict: Verdict
@@ -47,7 +47,7 @@ class Difference:
 def tolerated(offline: Sample, stated: float | None) -> float:
     """Return δ, the tolerated loss per episode.
 
-    δ is 5 % of the mean recorded reward or the tolerance of the marker, whichever is larger.
+    δ is the larger of 5 % of the mean recorded reward and the marker's tolerance.
     """
     return max(0.05 * abs(float(offline.total.mean())), stated or 0.0)
 
@@ -65,9 +65,9 @@ def compare(
 ) -> Difference:
     """Compare the deployed world with the designed one; `tolerance` is the tolerated loss per episode.
 
-    `sensors` are needed only for tiled utilities; without them, the utility is a table. If p-values are corrected over
-    many comparisons, more `permutations` are needed. `declared` is the range of totals, if known. Both samples are
-    rounded as in a recording.
+    `sensors` are needed only for tiled utilities; without them, the utility is a table. Correcting p-values over many
+    comparisons takes more `permutations`. `declared` is the range of totals, if known. Both samples are rounded as in a
+    recording.
     """
     offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
@@ -100,24 +100,24 @@ def compare(
 
 
 def as_compared(sample: Sample) -> Sample:
-    """Return the sample with its chain rounded as in a recording; only the chain is compared."""
+    """Return the sample with its chain, the only part that is compared, rounded as in a recording."""
     return replace(sample, chain=represented_chain(sample.chain))
 
 
 def outcomes(sample: Sample) -> Floats:
-    """Return what should not decrease: the total and the success of each episode, shape (episodes, 2)."""
+    """Return what should not decrease: each episode's total and success, shape (episodes, 2)."""
     return np.stack([sample.total, sample.passed.astype(np.float64)], axis=1)
 
 
 def succeed_less(success: tuple[float, float]) -> bool:
-    """Return whether the second share of successful missions is lower by more than PASS_RATE_LOSS."""
+    """Return whether the second success rate is lower than the first by more than PASS_RATE_LOSS."""
     before, after = success
-    # tolerates rounding, since 1 - 0.95 is slightly above 0.05 in floating point
+    # allow for rounding: 1 - 0.95 is slightly above 0.05 in floating point
     return before - after > PASS_RATE_LOSS + 1e-9
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:
-    """Return the verdict with its result, which follows from its p-values, its loss and its success."""
+    """Return the verdict with its result, derived from its p-values, loss and success rates."""
     reasons: list[Decreased] = []
     if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
         reasons.append("reward")
@@ -128,10 +128,10 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 
 
 def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
-    """Return the verdicts of several comparisons with p-values corrected by Holm's method, and results to match.
+    """Return the verdicts of several comparisons with p-values corrected by Holm, and updated results.
 
-    A comparison has one p-value for a drift, and one for a worse world. The latter is the smaller of two p-values: that
-    of a loss and that of more failures. The correction multiplies the larger one by the same factor.
+    A comparison has one p-value for a drift and one for a worse world, which is the smaller of those for a loss and for
+    more failures. The correction multiplies the larger of these two by the same factor.
     """
     drifts, worse = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_worse"))
     found = []
@@ -147,7 +147,7 @@ def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
 def loss_bounds(
     offline: Floats, online: Floats, risk: float, declared: Range | None = None
 ) -> tuple[float, float]:
-    """Return the confidence interval of the loss; each end has the risk `risk`. Totals have shape (episodes,)."""
+    """Return the confidence interval of the loss, with `risk` at each end; totals have shape (episodes,)."""
     bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk, declared)
     return bound.low, bound.high
 
@@ -163,7 +163,7 @@ def _compared_without(
 ) -> tuple[Region, dict[Cell, float]]:
     """Compare the worlds without some sensors; return the region and the change in each deployed cell.
 
-    Leaving out sensors does not affect p_drift, so it adds no false alarms.
+    This does not affect p_drift, so it adds no false alarms.
     """
     kept = [sensor for d, sensor in enumerate(sensors) if d not in without]
     shorter = projected(offline, without), projected(online, without)
@@ -185,7 +185,7 @@ def _drift(
     sensors: Sequence[Sensor],
     permutations: int,
 ) -> tuple[float, Region, dict[Cell, float]]:
-    """Return p_drift, the region, and the change by cell; both samples must share one table of cells."""
+    """Return p_drift, the region, and the change by cell; both samples must use the same table of cells."""
     evidence = gathered(offline, online, sensors)
     blocks = evidence.columns()
     p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator, permutations)
@@ -211,11 +211,11 @@ def _drift(
 
 
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
-    """Return the cells that deployed episodes avoid significantly, boolean of shape (cells,).
+    """Return the cells that deployed episodes avoid significantly, as booleans of shape (cells,).
 
-    Let N be the number of all episodes, K the number of those that visit a cell, and n the number of deployed episodes.
-    If the worlds are equal, the probability that no deployed episode visits the cell is C(N - K, n) / C(N, n). A cell
-    counts as avoided if this is below α divided by the number of candidate cells.
+    Of N episodes in total, n are deployed and K visit a cell. If the worlds are equal, no deployed episode visits the
+    cell with probability C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number of
+    candidate cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
     often = np.bincount(been, minlength=len(offline.cells))
@@ -227,10 +227,10 @@ def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
 
 
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the significant cells whose difference is at least MATERIAL times the largest one, shape (cells,).
+    """Return the significant cells whose difference is at least MATERIAL times the largest, shape (cells,).
 
     The designed mean per visit has an estimation error. If deployed episodes visit a cell more or less often than
-    designed ones, enough episodes make this error significant. The error stays small, so the limit removes such cells.
+    designed ones, this error becomes significant with enough episodes, but remains small. The limit removes such cells.
     """
     size = np.where(significant, np.abs(difference), 0.0)
     material: NDArray[np.bool_] = size >= MATERIAL * size.max(initial=0.0)
@@ -238,9 +238,9 @@ def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[n
 
 
 def paper_region(offline: Floats, online: Floats) -> Ints:
-    """Return the region as the paper defines it: cells whose utility differs by at least half of the maximum.
+    """Return the region as the paper defines it: cells whose utilities differ by at least half of the maximum.
 
-    Inputs have shape (cells, sites), with NaN for unvisited entries. Only entries visited in both worlds count.
+    Inputs have shape (cells, sites), with NaN where unvisited. Only entries visited in both worlds count.
     """
     gap = np.abs(np.nansum(online - offline, axis=1))
     return np.flatnonzero(gap >= 0.5 * gap.max()) if gap.max(initial=0.0) > 0 else np.empty(0, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""All groups of a permutation test, for small samples."""
+"""Enumerate all groups of a permutation test, for small samples."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from pytest_tarl.learning.tables import Ints
 
 
 def enumerable(rows: int, chosen: int, shuffles: int) -> bool:
-    """Return whether there are at most `shuffles` other groups of `chosen` rows."""
+    """Return whether, besides the observed group, there are at most `shuffles` groups of `chosen` rows."""
     return comb(rows, chosen) - 1 <= shuffles
 
 
 @lru_cache(maxsize=8)
 def other_groups(rows: int, chosen: int) -> Ints:
-    """Return the rows of all groups but the observed one, shape (groups - 1, chosen).
+    """Return the rows of every group except the observed one, shape (groups - 1, chosen).
 
-    A permutation test over these groups and the observed one is exact, and its smallest p-value is 1 / groups.
+    With the observed group added, a permutation test over these groups is exact, and its smallest p-value is 1 /
+    groups.
     """
     members = chain.from_iterable(combinations(range(rows), chosen))
     groups = np.fromiter(members, np.int64, comb(rows, chosen) * chosen).reshape(-1, chosen)[1:]

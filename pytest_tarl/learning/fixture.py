@@ -1,8 +1,8 @@
 """The recording of a test: `--tarl-record` writes it, `--tarl-online` reads it.
 
-A recording is one `.npz` file: a JSON header with a format version and a hash, and the packed columns of the
-statistics. The file is loaded without pickle. TARL writes a temporary file and then renames it. Equal
-episodes give equal bytes.
+A recording is a single `.npz` file, loaded without pickle: a JSON header with a format version and a hash, and the
+packed columns of the statistics. It is written to a temporary file first and then renamed. Equal episodes give equal
+bytes.
 
 Format versions: 1 Columns of float64. 2 Sums as logarithms (packing.py), which take a sixth of the size; Σ|f| per
 episode and site. If the test has formulas, the header also has `formulas` and `signals`, and there are columns
@@ -50,7 +50,7 @@ TUPLES = ("categories", "edges")  # fields of a sensor that are tuples, which JS
 
 @dataclass(frozen=True)
 class Fixture:
-    """The recording of a test; `sarsa` holds the learned table of each taint list, shape (cells, sites).
+    """The recording of a test; `sarsa` has the learned table of each taint list, shape (cells, sites).
 
     A taint list names the statements (sites) that a message passes on its way from a source to a sink.
     """
@@ -63,10 +63,10 @@ class Fixture:
     sample: Sample
     sarsa: tuple[Floats, ...]
     learner: str = "sarsa"  # name of the learning rule, a key of sarsa.LEARNERS
-    design: tuple[str, ...] = ()  # names of permanent drifts that are part of the design
-    signals: tuple[Signal, ...] = ()  # signals that formulas read from messages
+    design: tuple[str, ...] = ()  # names of permanent drifts that belong to the design
+    signals: tuple[Signal, ...] = ()  # signals from messages that formulas use
     stated: Guarantee | None = None
-    # file → definition → hash, see modules_of_tests.py
+    # file → definition → hash (see modules_of_tests.py)
     world: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
@@ -76,7 +76,7 @@ class Fixture:
 
 
 def save(fixture: Fixture, path: Path) -> None:
-    """Write the recording atomically. Raise FixtureError if that fails."""
+    """Write the recording atomically. Raise FixtureError if it cannot be written."""
     columns = _columns(fixture)
     header = {
         "format": FORMAT_VERSION,
@@ -110,7 +110,7 @@ def save(fixture: Fixture, path: Path) -> None:
 
 
 def prepare(path: Path) -> None:
-    """Check that the recording can be written. Raise FixtureError if not."""
+    """Check that the recording can be written. Raise FixtureError if it cannot."""
     try:
         check_writable(path)
     except OSError as problem:
@@ -122,7 +122,7 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 
 def load(path: Path) -> Fixture:
-    """Read a recording. Raise FixtureError if that is impossible."""
+    """Read a recording. Raise FixtureError if it cannot be read."""
     try:
         content = read_regular(path)
     except FileNotFoundError:
@@ -137,9 +137,9 @@ def load(path: Path) -> Fixture:
 
 
 def parsed(content: bytes, path: str) -> Fixture:
-    """Return the recording from the content of a file; `path` names the file in messages.
+    """Return the recording from a file's content; `path` is the file's name in messages.
 
-    Raise FixtureError if the file is damaged, too large for the memory, or of another format.
+    Raise FixtureError if the file is damaged, too large for the memory, or in another format.
     """
     try:
         columns = read_arrays(content)
@@ -174,7 +174,7 @@ def parsed(content: bytes, path: str) -> Fixture:
             check(fixture.sample, len(fixture.sensors), fixture.sarsa)
     except FixtureError:
         raise
-    except Exception as problem:  # a file with a matching digest can still have invalid content
+    except Exception as problem:  # content can be invalid even if the digest matches
         raise FixtureError(
             f"The recording {path} is not valid in format {FORMAT_VERSION}{_why(problem)}.",
             RECORD_AGAIN,
@@ -189,7 +189,7 @@ def _why(problem: Exception) -> str:
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:
-    """Return the size on disk (bytes) of each taint list's columns."""
+    """Return the size on disk of each taint list's columns, in bytes."""
     with ZipFile(path) as archive:
         entries = archive.infolist()
     return tuple(
@@ -263,7 +263,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
 
 
 def _guarantee(told: Mapping[str, Any]) -> Guarantee:
-    """Return the bounds in a header. Raise DamagedError if the bounds are not numbers."""
+    """Return the bounds in a header. Raise DamagedError if they are not numbers."""
     declared = None if told.get("declared") is None else tuple(told["declared"])
     bounds = {"success": Bound(**told["success"]), "mean": Bound(**told["mean"])}
     found = Guarantee(**{**told, **bounds, "declared": declared})

@@ -1,7 +1,7 @@
-"""Estimate how much memory the recording of episodes will need, and warn before memory runs out.
+"""Estimate how much memory recording will need, and warn before memory runs out.
 
-While episodes run, their statistics are kept as columns with 8 bytes per number. Merging, packing and writing them
-takes `PEAK` times as much memory. Both grow in proportion to the number of episodes, so the first episodes allow an
+While episodes run, their statistics are kept as columns with 8 bytes per number. To merge, pack and write them takes
+`PEAK` times as much memory. Both grow in proportion to the number of episodes, so the first few episodes allow an
 estimate for all.
 """
 
@@ -17,15 +17,15 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.free_memory import available
 from pytest_tarl.learning.tables import Sample
 
-PEAK = 5  # peak memory per byte of columns, in bytes (benchmarks/limits.py, case recording)
-# number of episodes before the first estimate; later estimates come at each doubling
+PEAK = 5  # peak bytes of memory per byte of columns (benchmarks/limits.py, case recording)
+# number of episodes before the first estimate; the estimate is repeated whenever this number doubles
 FIRST = 3
 STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9
 
 
 def nbytes(sample: Sample) -> int:
-    """Return the number of bytes of all columns of a sample."""
+    """Return the size of all columns of a sample in bytes."""
     return sum(array.nbytes for array in _arrays(sample))
 
 
@@ -42,7 +42,7 @@ def _arrays(value: Any) -> Iterator[np.ndarray[Any, Any]]:
 
 @dataclass
 class Footprint:
-    """The memory of the episodes so far and of all expected episodes; `tell` is called with the warning."""
+    """The memory of the episodes so far and of all expected ones; `tell` receives the warning."""
 
     expected: int
     tell: Callable[[str], None] = lambda _: None
@@ -83,7 +83,7 @@ class Footprint:
             )
 
     def _needed(self, columns: int) -> int:
-        """Return the additional bytes needed to write columns of this size."""
+        """Return how many more bytes it takes to write columns of this size."""
         return PEAK * columns - self.held
 
     def _advice(self, free: int) -> str:

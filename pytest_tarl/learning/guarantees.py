@@ -1,4 +1,4 @@
-"""State bounds for future episodes in the worlds that a test samples."""
+"""State bounds for future episodes in the worlds from which a test samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.learning.bounds import (
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 
-CONFIDENCE = 0.95  # default of the marker's confidence
+CONFIDENCE = 0.95  # default `confidence` of the marker
 QUANTILE = 0.05
 
 
@@ -30,10 +30,10 @@ def stated(
     anytime: bool = False,
     varied: bool = True,
 ) -> Guarantee:
-    """Return bounds for future episodes, computed from these episodes; each bound holds on its own.
+    """Return bounds for future episodes, computed from these; the confidence is that of a single bound.
 
-    Set `anytime` if the number of episodes depends on their results; then there is no bound on a quantile. Raise
-    ValueError if a total lies outside the declared range.
+    Set `anytime` if the number of episodes depends on their results; quantiles then have no bound. Raise ValueError if
+    a total is outside the declared range.
     """
     sure, count = confidence or CONFIDENCE, len(passed)
     success = (rate_sequence if anytime else rate)(sum(passed), count, sure)
@@ -52,7 +52,7 @@ def stated(
 
 
 def varies(sample: Sample) -> bool:
-    """Return whether any two episodes differ in their steps, results or rewards."""
+    """Return whether any two episodes differ in steps, results or rewards."""
     chain = sample.chain
     rows = np.bincount(chain.episode, minlength=sample.episodes)
     if np.ptp(sample.total) or np.ptp(sample.steps) or np.ptp(sample.passed.astype(int)) or np.ptp(rows):

@@ -1,4 +1,4 @@
-"""Results of temporal formulas over many episodes: one row per episode, one column per formula."""
+"""Results of temporal formulas: one row per episode, one column per formula."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.model import FormulaRow, FormulaWorld
 
 
 def judgements(judged: Sequence[Judged]) -> Judgements | None:
-    """Return the row of one episode, or None if it has no formulas."""
+    """Return the row of one episode, or None if no formula was judged."""
     if not judged:
         return None
     ordered = sorted(judged)
@@ -25,10 +25,10 @@ def judgements(judged: Sequence[Judged]) -> Judgements | None:
 
 
 def together(samples: Sequence[Sample], picked: Sequence[tuple[int, int]]) -> Judgements | None:
-    """Return one row per picked episode, with a column for every formula that occurs in any sample.
+    """Return one row per picked episode, with a column for every formula in any sample.
 
-    A picked episode is a pair: the index of a sample, and the row of the episode in this sample. Entries are NaN where
-    a sample lacks a formula.
+    A picked episode is a pair: the index of a sample, and the episode's row in it. Entries are NaN for formulas that
+    the sample does not have.
     """
     return _united([one.judgements for one in samples], picked)
 
@@ -49,7 +49,7 @@ def _united(have: Sequence[Judgements | None], picked: Sequence[tuple[int, int]]
 
 
 def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
-    """Summarise a formula over the episodes that judged it; return None if no episode did."""
+    """Summarise a formula over the episodes that judged it; return None if there are none."""
     if judged is None or formula not in judged.formulas:
         return None
     column = judged.formulas.index(formula)
@@ -68,7 +68,7 @@ def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
 
 
 def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple[FormulaRow, ...]:
-    """Return one row per formula: first the formulas in `order`, then the other formulas of the worlds."""
+    """Return one row per formula: those in `order` first, then the other formulas of the worlds."""
     others = sorted({name for one in worlds.values() if one is not None for name in one.formulas})
     found = []
     for formula in dict.fromkeys((*order, *others)):
@@ -80,7 +80,7 @@ def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple
 def with_worlds(
     known: Sequence[FormulaRow], worlds: Mapping[str, Sequence[Sequence[Judged]]]
 ) -> tuple[FormulaRow, ...]:
-    """Add results in further worlds to each formula's row; `worlds` holds, for each world, the results by episode."""
+    """Add results in further worlds to each formula's row; `worlds` has the results by world and episode."""
     summed = {name: stacked(episodes) for name, episodes in worlds.items()}
     return tuple(
         replace(
@@ -99,13 +99,13 @@ def with_worlds(
 
 
 def stacked(episodes: Iterable[Sequence[Judged]]) -> Judgements | None:
-    """Return the rows of several episodes; episodes without results are skipped."""
+    """Return the rows of several episodes, without those that have no results."""
     found = [one for one in map(judgements, episodes) if one is not None]
     return _united(found, [(i, 0) for i in range(len(found))])
 
 
 def accounts(judged: Judgements | None) -> tuple[str, ...]:
-    """Return one line per formula that summarises the episodes of one world."""
+    """Return one line per formula that summarises one world's episodes."""
     lines = []
     for name in judged.formulas if judged is not None else ():
         one = world(judged, name)
@@ -116,7 +116,7 @@ def accounts(judged: Judgements | None) -> tuple[str, ...]:
 
 
 def never_judged(judged: Judgements | None) -> tuple[str, ...]:
-    """Return the formulas that no episode judged, because every episode was too short."""
+    """Return the formulas that were never judged, because every episode was too short."""
     if judged is None:
         return ()
     columns = enumerate(judged.formulas)

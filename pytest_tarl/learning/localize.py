@@ -1,6 +1,6 @@
-"""Rank sites, the statements that may cause a loss.
+"""Rank sites: the statements that may cause a loss.
 
-The slices of Eq. 2 of the paper give a first ranking; effects measured in simulation replace it.
+A first ranking uses the slices of the paper's Eq. 2; effects measured in simulation then replace it.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.model import Culprit, OperandEffect, SitePlace, Slice, TaintList
 
-BELOW = 0.49  # maximum score of sites without changeable operands, if other sites have some
+BELOW = 0.49  # maximum score of sites that a repair cannot change, if there are others
 
 
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
-    """Sum the utility of each site over the region (Eq. 2); inputs have shape (cells, sites).
+    """Sum each site's utility over the region (Eq. 2); inputs have shape (cells, sites).
 
-    A cell is ignored for a site if the site was not visited in this cell in one of the worlds.
+    A site's sum skips the cells in which the site was not visited in both worlds.
     """
     both = ~np.isnan(offline[region]) & ~np.isnan(online[region])
     before = np.where(both, offline[region], 0.0).sum(axis=0)
@@ -34,11 +34,10 @@ def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints)
 def prior(
     per_list: Iterable[Sequence[Slice]], changeable: Collection[str] | None = None
 ) -> tuple[tuple[SitePlace, float], ...]:
-    """Rank sites by score: the difference of a site's slices, relative to the largest difference in its taint list.
+    """Rank sites by score: the difference of a site's slices, relative to the largest in its taint list.
 
-    A site in several lists gets its best score. Sites without a difference are omitted. `changeable` holds the ids of
-    the sites with an operand that a repair can change. Such sites get scores above 0.5, and all others get scores below
-    0.5.
+    A site in several lists gets its best score. Sites without a difference are omitted. `changeable` has the ids of the
+    sites with an operand that a repair can change. These get scores above 0.5, all others below 0.5.
     """
     best: dict[str, tuple[float, SitePlace]] = {}
     for ranked in per_list:
@@ -52,7 +51,7 @@ def prior(
 
 
 def _difference(one: Slice) -> float:
-    """Return the absolute difference of a slice; 0 if unknown or a rounding error."""
+    """Return the absolute difference of a slice; 0 if it is unknown or only a rounding error."""
     size = abs(one.difference)
     return size if size > 4 * ROUNDING * (abs(one.offline) + abs(one.online)) else 0.0
 
@@ -70,11 +69,11 @@ def culprits(
     loss: float,
     method: str = "sweep",
 ) -> tuple[Culprit, ...]:
-    """Rank sites by their measured effects, or else by their slices.
+    """Rank sites by their measured effects, or by their slices where no effect was measured.
 
-    `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
-    the confirmed repair get the highest score; among them, the site with the largest effect of its own comes first.
-    Sites that were not tried in simulation get 0. Sites at which no change of a constant changed the reward come last.
+    `effects` maps site ids to effects in reward per episode; an effect of size `loss` scores 1. The sites of the
+    confirmed repair score highest, the one with the largest effect of its own first. Sites that were not tried in
+    simulation score 0. Sites where no changed constant affected the reward come last.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]

@@ -1,4 +1,4 @@
-"""Compare worlds that share no cells, by leaving out the sensors whose values are new."""
+"""Compare worlds that have no cells in common, by leaving out the sensors whose values are new."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import numpy as np
 from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-# maximum share of deployed steps in recorded cells for worlds without common cells
+# worlds count as having no common cells if at most this share of the deployed steps is in recorded cells
 FEW = 0.05
-ENOUGH = 0.5  # sensors are left out until this share of the steps is in recorded cells
+ENOUGH = 0.5  # sensors are left out until at least this share of the steps is in recorded cells
 
 
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
-    """Return the fewest sensors that must be left out for the worlds to overlap.
+    """Return the smallest set of sensors to leave out so that the worlds overlap.
 
-    The result is empty if the worlds already overlap, or if no choice of sensors makes them overlap.
+    It is empty if the worlds already overlap, or cannot be made to overlap.
     """
     width = len(offline.cells[0]) if offline.cells else 0
     if _met(offline, online, tuple(range(width))) > FEW:
@@ -32,12 +32,12 @@ def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
 
 
 def apart(offline: Sample, online: Sample) -> bool:
-    """Return whether almost no deployed step was in a recorded cell."""
+    """Return whether almost no deployed step is in a recorded cell."""
     return _met(offline, online, tuple(range(len(offline.cells[0]) if offline.cells else 0))) <= FEW
 
 
 def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
-    """Return the share of deployed steps that are in recorded cells if a cell consists of the sensors `kept` only."""
+    """Return the share of deployed steps in recorded cells if cells have only the sensors `kept`."""
     known = {_shortened(offline.cells[i], kept) for i in np.unique(offline.chain.cell).tolist()}
     steps = sum_by(online.chain.cell, online.chain.count, len(online.cells))
     inside = sum(steps[i] for i, cell in enumerate(online.cells) if _shortened(cell, kept) in known)
@@ -45,7 +45,7 @@ def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
 
 
 def groups(cells: Sequence[Cell], without: Sequence[int]) -> tuple[tuple[Cell, ...], Ints]:
-    """Remove the sensors `without` from all cells; return the distinct results, and the row of each cell in them.
+    """Remove the sensors `without` from all cells; return the distinct results, and each cell's row in them.
 
     The results are sorted; the rows have shape (cells,).
     """
@@ -59,15 +59,15 @@ def groups(cells: Sequence[Cell], without: Sequence[int]) -> tuple[tuple[Cell, .
 def projected(sample: Sample, without: Sequence[int]) -> Sample:
     """Return the sample without some sensors and without taint lists."""
     cells, row = groups(sample.cells, without)
-    place = np.append(row, END)  # index -1 (END) maps to END
+    place = np.append(row, END)  # END is -1, so it maps to the last entry, END
     chain = replace(sample.chain, cell=place[sample.chain.cell], next_cell=place[sample.chain.next_cell])
     return replace(sample, cells=cells, chain=chain, lists=())
 
 
 def lent(table: Floats, recorded: ListSample, cells: Sequence[Cell], without: Sequence[int]) -> Floats:
-    """Fill unknown entries of a table, shape (cells, sites), with the mean over similar cells.
+    """Fill the unknown entries of a table, shape (cells, sites), with the mean over similar cells.
 
-    Similar cells differ only in the sensors that are left out. The mean is weighted by visits.
+    Similar cells differ only in the sensors left out. The mean is weighted by visits.
     """
     alike, row = groups(cells, without)
     visits = recorded.visits

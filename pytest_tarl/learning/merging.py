@@ -1,6 +1,6 @@
 """Merge samples by seed.
 
-Rows are sorted by key. Sums therefore do not depend on which process recorded which episode.
+Rows are sorted by key, so sums do not depend on which process recorded which episode.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ Columns = TypeVar("Columns", Chain, Edges, Visits)
 
 
 def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
-    """Return the union of samples by seed; if a seed occurs twice, the first sample wins.
+    """Return the union of samples by seed; if several have the same seed, the first one wins.
 
-    The table of cells includes the cells of all samples and the given ones. At least one sample is required.
+    The table of cells has the cells of all samples, and those in `cells`. At least one sample is required.
     """
     cells = tuple(sorted({*cells, *(cell for one in samples for cell in one.cells)}))
     names = tuple(sorted({name for one in samples for name in one.part_names}))
@@ -50,20 +50,20 @@ def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
 
 
 def aligned(first: Sample, second: Sample) -> tuple[Sample, Sample]:
-    """Return both samples with one common table of cells."""
+    """Return both samples with a common table of cells."""
     return merge([first], second.cells), merge([second], first.cells)
 
 
 @dataclass(frozen=True)
 class _Place:
-    """The rows of a sample in the merged sample.
+    """Where the rows of a sample go in the merged sample.
 
-    `episode` is -1 for an episode whose seed occurs in an earlier sample.
+    `episode` is -1 for an episode whose seed is in an earlier sample.
     """
 
     sample: Sample
     episode: Ints
-    cell: Ints  # new row of each cell; the index -1 (END) maps to END
+    cell: Ints  # new row of each cell; END is -1, so it maps to the last entry, END
     part: Sequence[int]
     parts: int
 
@@ -81,7 +81,7 @@ class _Place:
         return _kept(moved)
 
     def state(self, state: Ints, width: int) -> Ints:
-        """Return the states with new numbers, in the same shape; START and END stay unchanged."""
+        """Renumber states; START and END stay the same, and so does the shape."""
         cell, site = np.divmod(np.maximum(state - 1, 0), max(width, 1))
         return np.where(state > START, 1 + self.cell[cell] * width + site, state) if state.size else state
 
@@ -96,7 +96,7 @@ class _Place:
         return _kept(moved)
 
     def flow(self, i: int, merged: Floats) -> None:
-        """Write a taint list's flows to its rows in `merged`, shape (merged episodes, sites)."""
+        """Write a taint list's flows to this sample's rows of `merged`, shape (merged episodes, sites)."""
         kept = self.episode >= 0
         merged[self.episode[kept]] = self.sample.lists[i].flow[kept]
 
@@ -122,13 +122,13 @@ def _merge_list(places: Sequence[_Place], i: int, episodes: int) -> ListSample:
 
 
 def _kept(columns: Columns) -> Columns:
-    """Drop the rows of episodes that are taken from another sample."""
+    """Drop the rows of episodes that come from another sample."""
     keep = columns.episode >= 0
     return type(columns)(*(getattr(columns, f.name)[keep] for f in fields(columns)))
 
 
 def _stack(tables: Sequence[Columns], *keys: str) -> Columns:
-    """Concatenate tables and sort the rows by episode, then by `keys`."""
+    """Concatenate tables and sort their rows by episode, then by `keys`."""
     kind = type(tables[0])
     whole = {f.name: np.concatenate([getattr(t, f.name) for t in tables]) for f in fields(kind)}
     order = np.lexsort([whole[key] for key in (*reversed(keys), "episode")])

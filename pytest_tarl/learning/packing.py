@@ -1,13 +1,12 @@
 """Pack columns of statistics into small arrays.
 
-Integers are stored unchanged. A sum z is stored as its sign and round(2¹⁶·log₂|z|), minus a prediction; the relative
-error is at most 5.3e-6. In this form, proportional values, such as those of `delta` and `5 * delta`, differ by a
-constant, which deflate compresses well. A sum of squares is close to the squared sum divided by the count. Only its
-difference from this prediction is stored, with an error of at most 0.14 %. Packing, unpacking and packing again gives
-the same arrays.
+Integers are stored unchanged. A sum z is stored as its sign and round(2¹⁶·log₂|z|), minus a prediction, with a relative
+error of at most 5.3e-6. In this form, proportional values (such as those of `delta` and `5 * delta`) differ by a
+constant, which deflate compresses well. The prediction for a sum of squares is the squared sum divided by the count;
+its error is at most 0.14 %. Packing the unpacked arrays again gives the same arrays.
 
-Samples that are compared with a recording are rounded in the same way (`represented`). Without this, a live world with
-constant rewards would differ from the recorded one by rounding alone.
+Samples that are compared with a recording are rounded in the same way (`represented`). Otherwise a live world with
+constant rewards would differ from the recorded one, just because of rounding.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ ROUNDING = 5.3e-6  # maximum relative error of a packed sum: 2^(1/2 / UNIT) - 1
 
 
 def represented(sample: Sample) -> Sample:
-    """Return the sample rounded as in a recording; rounding it again changes nothing."""
+    """Return the sample rounded as in a recording; repeating this changes nothing."""
     lists = (
         unpacked_list("list", packed_list("list", one), one.width) if one.width else one
         for one in sample.lists
@@ -62,7 +61,7 @@ def unpacked_chain(arrays: Mapping[str, NDArray[Any]]) -> Chain:
 
 
 def packed_list(name: str, recorded: ListSample) -> Arrays:
-    """Return the packed arrays of a taint list; visit counts are omitted, since they follow from the edges."""
+    """Return the packed arrays of a taint list, without visit counts, which follow from the edges."""
     edges, visits = recorded.edges, recorded.visits
     before = _before(visits, recorded.width)
     count = _logarithms(visits.count.astype(np.float64))
@@ -119,7 +118,7 @@ def unpacked_table(name: str, arrays: Mapping[str, NDArray[Any]]) -> Floats:
 def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
     """Return the episode, state and count of all visits.
 
-    Each visit has one outgoing edge, so the edges determine the counts; the edge of the last visit leads to END.
+    Each visit has one outgoing edge, so the edges determine the counts. The edge of the last visit leads to END.
     """
     span = int(edges.state.max(initial=START)) + 1
     codes, inverse = np.unique(edges.episode * span + edges.state, return_inverse=True)
@@ -128,7 +127,7 @@ def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
 
 
 def _before(visits: Visits, width: int) -> Ints:
-    """Return the index of each row's previous row if both have the same cell and episode, else -1; shape (rows,)."""
+    """Return the index of each row's previous row with the same cell and episode, or -1; shape (rows,)."""
     cell = (visits.state - 1) // max(width, 1)  # -1 for the start of an episode
     same = (np.diff(cell) == 0) & (np.diff(visits.episode) == 0)
     row = np.arange(cell.size, dtype=np.int64) - 1
@@ -136,14 +135,14 @@ def _before(visits: Visits, width: int) -> Ints:
 
 
 def _logarithms(values: Floats) -> Ints:
-    """Return round(2¹⁶·log₂|z|), or 0 for zero; squares that overflowed to infinity stay infinite."""
+    """Return round(2¹⁶·log₂|z|), or 0 for zero; squares that overflowed stay infinite."""
     size = np.abs(values)
     with np.errstate(divide="ignore"):
         return np.where(size > 0, np.rint(np.minimum(np.log2(size), 1024.0) * UNIT), 0).astype(np.int64)
 
 
 def _packed(values: Floats, foretold: Ints, step: int) -> tuple[Signs, Ints]:
-    """Return the signs, and in steps the difference between each logarithm and its prediction `foretold`."""
+    """Return the signs, and the difference of each logarithm from its prediction `foretold`, in steps."""
     signs = np.sign(values).astype(np.int8)
     away = np.rint((_logarithms(values) - foretold) / step).astype(np.int64)
     return signs, np.where(signs == 0, 0, away)
@@ -157,9 +156,9 @@ def _unpacked(column: tuple[Signs, Ints], foretold: Ints, step: int) -> tuple[Fl
 
 
 def _unpacked_in_turn(column: tuple[Signs, Ints], before: Ints) -> tuple[Floats, Ints]:
-    """Unpack values whose prediction is the value of the previous row.
+    """Unpack values that are predicted from the previous row.
 
-    The prediction is 0 if there is no previous row or its value is zero.
+    The prediction is 0 if there is no previous row, or its value is zero.
     """
     signs, away = column
     starts = (before < 0) | (np.append(0, signs[:-1])[: signs.size] == 0)
@@ -176,16 +175,16 @@ def _values(signs: Signs, code: Ints) -> Floats:
 
 
 def narrowed(whole: Ints) -> NDArray[Any]:
-    """Return integers of any shape in the smallest type that holds them."""
+    """Return integers of any shape in the smallest sufficient type."""
     kinds = (np.int8, np.int16, np.int32, np.int64)
     low, high = whole.min(initial=0), whole.max(initial=0)
     return whole.astype(next(k for k in kinds if np.iinfo(k).min <= low and high <= np.iinfo(k).max))
 
 
 def _stacked(name: str, columns: list[tuple[Signs, Ints]]) -> Arrays:
-    """Return the signs, shape (columns, rows), and the bytes of the numbers by significance, shape (columns, 4, rows).
+    """Return the signs, shape (columns, rows), and the numbers' bytes by significance, (columns, 4, rows).
 
-    Most of the more significant bytes are 0. They compress well because they are stored together.
+    Most of the more significant bytes are 0, and compress well when stored together.
     """
     signs = np.stack([one for one, _ in columns])
     away = np.stack([one for _, one in columns])

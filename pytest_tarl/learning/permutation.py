@@ -1,7 +1,7 @@
 """Permutation tests of the hypothesis that two groups of episodes are exchangeable.
 
-If there are at most as many groups as shuffles, a test uses all groups, so that a small sample can reach its smallest
-possible p-value. Otherwise, it uses random groups.
+A test uses all groups if there are at most as many as the requested shuffles, so that a small sample can reach its
+smallest possible p-value. Otherwise it uses random groups.
 
 P-values are corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young
 1993).
@@ -19,14 +19,14 @@ from pytest_tarl.learning.tables import Floats, Ints
 
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
-ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-# p-values from this value on get no further shuffles
+ARITHMETIC = 1e-12  # rounding error of a few float sums, relative to the largest
+# p-values of at least this size get no further shuffles
 SETTLED = 0.2
-AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
+AT_ONCE = 64  # number of shuffles drawn at once, chosen to fit into the processor's cache
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
-    """Return the number of shuffles needed for significance after correction."""
+    """Return how many shuffles are needed for a result to be significant after correction."""
     return (
         min(max(PERMUTATIONS, ceil(2 * comparisons / alpha) - 1), MOST_PERMUTATIONS)
         if comparisons > 1
@@ -44,13 +44,13 @@ def permuted_loss(
 ) -> float:
     """Return the one-sided permutation p-value for a lower deployed mean; inputs have shape (episodes,).
 
-    Sums that differ only by rounding errors count as equal, which makes the p-value larger. If the p-value may be below
-    SETTLED, all shuffles are used.
+    Sums that differ only by rounding count as equal, which makes the p-value larger. All shuffles are used only if the
+    p-value may be below SETTLED.
     """
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
-    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of summation changes the rounding
+    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # rounding depends on the order of summation
     observed = observed_sum(pooled, online.size) + tie
 
     def reached(shuffled: Floats) -> Ints:
@@ -62,9 +62,9 @@ def permuted_loss(
 def permuted_decreases(
     offline: Floats, online: Floats, generator: np.random.Generator, permutations: int = PERMUTATIONS
 ) -> Floats:
-    """Return the one-sided p-value of each column for a lower deployed mean, corrected over all columns.
+    """Return each column's one-sided p-value for a lower deployed mean, corrected over all columns.
 
-    Inputs have shape (episodes, columns). A constant column does not affect the p-values of the others.
+    Inputs have shape (episodes, columns). A constant column does not affect the others.
     """
     varied = np.flatnonzero(np.ptp(np.concatenate((online, offline)), axis=0) > 0)
     p_values = np.ones(online.shape[1])
@@ -88,11 +88,11 @@ def max_statistic(
 ) -> Floats:
     """Return the p-value of each column, corrected over all columns; shape (columns,).
 
-    The first `first` rows form one group, and all other rows form the second group. The statistic is the difference
-    between the group means in units of the column's standard deviation; it orders columns as the pooled t statistic
-    does. If `one_sided`, only larger values in the first group count. Each column is compared with the maximum over
-    itself and all columns with smaller statistics (step-down). A column that varies by at most the share `error` of its
-    largest entry counts as constant and has the p-value 1.
+    The first `first` rows form one group, all other rows the second. The statistic is the difference of the group means
+    in standard deviations of the column; it orders columns as the pooled t statistic does. If `one_sided`, only larger
+    values in the first group count. Each column is compared with the maximum over itself and all columns with smaller
+    statistics (step-down). A column that varies by at most the share `error` of its largest entry counts as constant
+    and gets the p-value 1.
     """
     size = (lambda sums: sums) if one_sided else np.abs
     deviation = columns - columns.mean(axis=0)
@@ -101,7 +101,7 @@ def max_statistic(
     p_values = np.ones(columns.shape[1])
     if not alive.size or not 0 < first < columns.shape[0]:
         return p_values
-    relative = deviation[:, alive] / extent[alive]  # scaled so that squares neither overflow nor underflow
+    relative = deviation[:, alive] / extent[alive]  # scaled so that squares do not overflow or underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
     observed = size(observed_sum(standard, first))
     order = np.argsort(observed, kind="stable")
@@ -125,12 +125,12 @@ def _p_values(
 ) -> Floats:
     """Return one-sided p-values, shape (counts,).
 
-    `reached` receives the sums of some shuffles. It returns, for each statistic, how many of these shuffles reach the
+    `reached` gets the sums of some shuffles. For each statistic, it returns how many of these shuffles reach the
     observed value.
 
-    More than PERMUTATIONS shuffles are needed only for p-values that may remain significant after a correction over
-    many comparisons. If the smallest p-value is at least SETTLED after PERMUTATIONS shuffles, the remaining shuffles
-    are skipped. Skipping them never gives a p-value below SETTLED.
+    More than PERMUTATIONS shuffles are needed only for p-values that may stay significant after a correction over many
+    comparisons. If the smallest p-value is at least SETTLED after PERMUTATIONS shuffles, the rest are skipped. This
+    never gives a p-value below SETTLED.
     """
     counts, done = None, 0
     for shuffled in shuffled_sums(values, first, generator, permutations):
@@ -143,7 +143,7 @@ def _p_values(
 
 
 def observed_sum(values: Floats, first: int) -> Floats:
-    """Sum the first `first` rows of `values`, which has shape (rows, ...); the result has shape (...)."""
+    """Sum the first `first` rows of `values`, shape (rows, ...); the result has shape (...)."""
     picked = np.zeros((1, len(values)))
     picked[0, :first] = 1.0
     return np.asarray((picked @ values)[0])
@@ -152,11 +152,11 @@ def observed_sum(values: Floats, first: int) -> Floats:
 def shuffled_sums(
     values: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
 ) -> Iterator[Floats]:
-    """Yield sums over groups of `first` rows, for several groups at once, shape (groups, ...).
+    """Yield the sums of groups of `first` rows, several groups at a time, shape (groups, ...).
 
-    `values` has shape (rows, ...). The first rows are the observed group. If there are at most `permutations` other
-    groups, each of them is used once. Otherwise, each shuffle draws a random number for each row and picks the rows
-    with the smallest numbers.
+    `values` has shape (rows, ...); its first rows are the observed group. If there are at most `permutations` other
+    groups, each is used once. Otherwise each shuffle draws a random number per row and picks the rows with the smallest
+    numbers.
     """
     if enumerable(len(values), first, permutations):
         groups = other_groups(len(values), first)
@@ -169,17 +169,17 @@ def shuffled_sums(
 
 
 def _picked(groups: Ints, rows: int) -> Floats:
-    """Return a matrix of shape (groups, rows): 1 where a row belongs to a group, and 0 elsewhere."""
+    """Return a matrix of shape (groups, rows), 1 where a row belongs to a group and 0 elsewhere."""
     picked = np.zeros((len(groups), rows))
     np.put_along_axis(picked, groups, 1.0, axis=1)
     return picked
 
 
 def _smallest(draws: Floats, first: int) -> Floats:
-    """Mark the smallest numbers of each row, `first` of them, with 1, and all others with 0; keep the shape."""
+    """Mark the `first` smallest numbers in each row with 1 and all others with 0; keep the shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    # rows with several numbers at the limit, so fewer than `first` numbers are below it
+    # rows with several numbers at the limit: fewer than `first` numbers are below it
     tied = np.flatnonzero(picked.sum(axis=1) != first)
     for row in tied.tolist():
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

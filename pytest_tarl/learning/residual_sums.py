@@ -1,4 +1,4 @@
-"""Build the columns that a comparison tests: sums of residuals per episode, by cell and by group of cells."""
+"""Build the columns that a comparison tests: each episode's residuals, summed by cell and group of cells."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # minimum number of visits to a cell that the fit does not know
-NOVEL_EPISODES = 2  # minimum number of episodes that visit a novel cell
+NOVEL_VISITS = 3  # minimum number of visits to a cell outside the fit
+NOVEL_EPISODES = 2  # minimum number of episodes that visit such a cell
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Columns for comparing two worlds, shape (episodes, columns); deployed episodes come first.
+    """The columns for comparing two worlds, shape (episodes, columns); deployed episodes come first.
 
-    A drift may be strong in a few cells or weak in many. Therefore, there are also columns for slabs and for the total
-    reward of each episode. A slab is the set of all cells that share one bin of one sensor; its column sums over these
+    A drift may be strong in a few cells or weak in many, so there are also columns for slabs and for each episode's
+    total reward. A slab is the set of all cells with the same bin of one sensor; its column is the sum over these
     cells.
     """
 
@@ -36,13 +36,13 @@ class Evidence:
     totals: Floats
 
     def columns(self) -> tuple[Floats, ...]:
-        """Return the blocks of columns, each of shape (episodes, …): move, reward, novel, both slab blocks, totals."""
+        """Return the blocks of columns, each (episodes, …): move, reward, novel, both slab blocks, totals."""
         parts = ((self.move, self.move_error), (self.reward, self.reward_error))
         slabs = [beyond(_summed(part, self.slabs), _summed(error, self.slabs)) for part, error in parts]
         return (self.move, self.reward, self.novel, *slabs, self.totals)
 
     def covered(self, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return which cells belong to a significant slab, boolean of shape (cells,)."""
+        """Return which cells are in a significant slab, as booleans of shape (cells,)."""
         chosen = np.zeros(self.move.shape[1], dtype=bool)
         for slab in np.flatnonzero(significant).tolist():
             chosen[self.slabs[slab]] = True
@@ -50,7 +50,7 @@ class Evidence:
 
 
 def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) -> Evidence:
-    """Fit one half of the recorded episodes; compare the other with the deployed ones."""
+    """Fit one half of the recorded episodes; compare the other half with the deployed ones."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
@@ -74,10 +74,10 @@ def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) ->
 
 
 def slabs(cells: Sequence[Cell]) -> tuple[Ints, ...]:
-    """Return the row numbers of the cells in each slab, arrays of shape (cells of the slab,).
+    """Return the row numbers of each slab's cells, as arrays of shape (cells of the slab,).
 
-    There is a slab for every bin of every sensor, and a last slab with all cells. If there is only one sensor, each bin
-    is a cell, so only the last slab is returned.
+    There is a slab for every bin of every sensor, and a last slab with all cells. With only one sensor, each bin is a
+    cell, so only the last slab is returned.
     """
     table = np.array(cells, dtype=np.int64).reshape(len(cells), -1)
     columns = table.T if table.shape[1] > 1 else ()

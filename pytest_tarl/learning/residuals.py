@@ -1,11 +1,10 @@
 """Compute the Bellman residual of each step, in two parts: the move to the next cell, and the reward.
 
-A residual is the difference between what a step brings and what the designed utility predicts. The expectation of a
-residual is zero in every cell in which the world has not changed since the fit. Residuals therefore locate the change
-itself, and not the cells that a robot visits before it reaches the change (performance-difference lemma, Kakade &
-Langford 2002).
+A residual is the difference between what a step earns and what the designed utility predicts. Its expectation is zero
+in every cell where the world has not changed since the fit. Residuals therefore locate the change itself, and not the
+cells that a robot visits before it (performance-difference lemma, Kakade & Langford 2002).
 
-A residual smaller than its error is set to 0. With a constant reward, such a small residual comes only from rounding
+A residual smaller than its error is set to 0. With a constant reward, such residuals come only from rounding
 (packing.py) and from the order of summation.
 """
 
@@ -25,9 +24,9 @@ from pytest_tarl.learning.utility import GAMMA_STEP
 
 @dataclass(frozen=True)
 class Residuals:
-    """The two parts of the Bellman residual and the visits to novel cells, each of shape (episodes, cells).
+    """Both parts of the Bellman residual, and the visits to novel cells; each of shape (episodes, cells).
 
-    The errors bound the rounding error of each residual. The error of a sum of residuals is the sum of their errors.
+    The errors are limits for the rounding error of each residual. The error of a sum is the sum of the errors.
     """
 
     move: Floats
@@ -38,18 +37,18 @@ class Residuals:
 
 
 def in_fit(seed: int) -> bool:
-    """Return whether a recorded episode is used for the fit; the others are compared."""
+    """Return whether a recorded episode is used for the fit; the others are used for the comparison."""
     return zlib.crc32(str(seed).encode()) % 2 == 0
 
 
 @dataclass(frozen=True)
 class Model:
-    """Expected move and reward of a designed step by cell, shape (cells,); NaN if unknown."""
+    """The expected move and reward of a designed step by cell, shape (cells,); NaN if unknown."""
 
     utility: Floats
-    move: Floats  # mean of γU(x')-U(x) over all steps except the last one of an episode
+    move: Floats  # mean of γU(x')-U(x) over all steps but the last of an episode
     reward: Floats
-    size: Floats  # mean |Σr| per step; the rounding error of `reward` is proportional to it
+    size: Floats  # mean |Σr| per step, to which the rounding error of `reward` is proportional
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
@@ -64,10 +63,10 @@ def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
 
 
 def residuals(compared: Sample, model: Model) -> Residuals:
-    """Return the residuals of each episode by cell, minus the designed mean per visit.
+    """Return each episode's residuals by cell, minus the designed mean per visit.
 
-    If there is no drift, both parts then have expectation zero, no matter how often a cell is visited. The last step of
-    an episode has no move. Transitions from or to a cell of unknown utility are skipped.
+    Without a drift, both parts then have the expectation zero, however often a cell is visited. An episode's last step
+    has no move. Transitions from or to a cell of unknown utility are skipped.
     """
     chain, shape = compared.chain, (compared.episodes, len(compared.cells))
     known = ~np.isnan(model.utility)
@@ -88,12 +87,12 @@ def residuals(compared: Sample, model: Model) -> Residuals:
 
 
 def beyond(values: Floats, error: Floats) -> Floats:
-    """Return the values, with 0 where a value does not exceed its error."""
+    """Return the values, with 0 for each value that does not exceed its error."""
     return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _gain(chain: Chain, utility: Floats) -> Floats:
-    """Return γU(x')-U(x) per transition: 0 at the end, NaN if unknown."""
+    """Return γU(x')-U(x) for each transition: 0 at the end, NaN if unknown."""
     inside = chain.next_cell != END
     return np.where(
         inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0

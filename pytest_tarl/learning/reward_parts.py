@@ -1,7 +1,4 @@
-"""Find the cells in which parts of the reward are lost.
-
-A test may split its reward into named parts.
-"""
+"""Find the cells in which named parts of the reward are lost."""
 
 from __future__ import annotations
 
@@ -14,11 +11,11 @@ from pytest_tarl.learning.permutation import max_statistic
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-MATERIAL = 0.1  # minimum loss of a reported cell, as a share of the largest loss of any cell
+MATERIAL = 0.1  # minimum loss in a reported cell, as a share of the largest loss in any cell
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
-    """Return each reward part's mean sum per episode, in both worlds."""
+    """Return the mean sum per episode of each part of the reward, in both worlds."""
     names = sorted({*offline.part_names, *online.part_names})
     return {
         name: (
@@ -32,9 +29,9 @@ def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
 def lost(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
 ) -> Mapping[str, tuple[Cell, ...]]:
-    """Return each part's cells with a significant loss in the deployed world.
+    """Return, for each part, the cells with a significant loss in the deployed world.
 
-    Both samples must share one table of cells. P-values are corrected over all cells of all parts. The result also
+    Both samples must have the same table of cells. P-values are corrected over all cells of all parts. The result
     includes cells whose sum is lower only because episodes no longer reach them.
     """
     names = sorted({*offline.part_names, *online.part_names})
@@ -52,7 +49,7 @@ def lost(
 
 
 def _by_cell(world: Sample, name: str) -> Floats:
-    """Return the sums of a part, shape (episodes, cells), or zeros without it."""
+    """Return the sums of a part, shape (episodes, cells); zeros if the world does not have the part."""
     shape = (world.episodes, len(world.cells))
     if name not in world.part_names:
         return np.zeros(shape)

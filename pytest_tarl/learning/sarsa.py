@@ -1,7 +1,7 @@
-"""Learn the utility event by event: SARSA as in the paper, and the related expected SARSA and TD(λ).
+"""Learn the utility event by event: by SARSA as in the paper, expected SARSA, or TD(λ).
 
-An event is one execution of a site. A state c is a pair of cell and site, and q(c) is the expected reward from this
-state on.
+An event is one execution of a site. A state c is a pair of cell and site; q(c) is the expected reward from that state
+on.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ LAMBDA = 0.8
 
 
 class Learner:
-    """Learn q(c) of one taint list, episode by episode; subclasses implement the update rule.
+    """Learn q(c) of a taint list, episode by episode; subclasses implement the update rule.
 
-    The learning signal is ρ = r·[last event of its step] + r·|f|/F, where f is the flow value. F, the mean of |f|, is
-    known only after the last episode. All rules are linear in ρ, so each of the two terms has its own table. When both
-    tables are added, the second one is divided by F. Therefore, no episode has to be stored.
+    The learning signal is ρ = r·[last event of its step] + r·|f|/F, where f is the flow value and F the mean of |f|. F
+    is known only after the last episode. As all rules are linear in ρ, the two terms are learned in separate tables,
+    and the second table is divided by F at the end. This avoids storing the episodes.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -32,7 +32,7 @@ class Learner:
         self.gamma = gamma
         self.alpha = alpha
         self._row: dict[Cell, int] = {}
-        self._full = [0.0]  # one number per state; the first is for the state START
+        self._full = [0.0]  # one number per state, beginning with START
         self._scaled = [0.0]
         self._seen = set[int]()
 
@@ -58,7 +58,7 @@ class Learner:
         return table
 
     def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
-        """Update `q` in place from a sequence of states and their rewards."""
+        """Update `q` in place with a sequence of states and their rewards."""
         raise NotImplementedError
 
     def _passed(self, states: Sequence[int]) -> None:
@@ -89,8 +89,8 @@ class Sarsa(Learner):
 class ExpectedSarsa(Learner):
     """Expected SARSA: q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)].
 
-    P is estimated by the transition frequencies of all episodes so far. This is expected SARSA as in Sutton & Barto
-    2018, §6.6, with one difference: the next site and cell are chosen by the program and the world instead of a policy.
+    P is estimated by the transition frequencies of all episodes so far. The rule is that of Sutton & Barto 2018, §6.6,
+    except that the program and the world choose the next site and cell, instead of a policy.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -114,8 +114,8 @@ class ExpectedSarsa(Learner):
 class TDLambda(Learner):
     """TD(λ) with updates at the end of an episode: q(c) ← q(c) + α[G - q(c)], G = ρ + γ[(1 - λ)q(c') + λG'].
 
-    This is the off-line λ-return algorithm, Sutton & Barto 2018, §12.1. λ = 0 is SARSA with a table that changes only
-    after an episode.
+    This is the off-line λ-return algorithm of Sutton & Barto 2018, §12.1. λ = 0 is SARSA with a table that changes only
+    at the end of an episode.
     """
 
     def __init__(
@@ -155,6 +155,6 @@ def _added(first: Mapping[int, int], second: Mapping[int, int]) -> dict[int, int
 
 
 def _shares(counts: Mapping[int, int]) -> list[tuple[int, float]]:
-    """Return the next states and their probabilities; END is omitted, since its utility is 0."""
+    """Return the next states with their probabilities; END is omitted, because its utility is 0."""
     whole = sum(counts.values())
     return [(then, count / whole) for then, count in counts.items() if then != END]

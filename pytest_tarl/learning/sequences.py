@@ -1,6 +1,6 @@
-"""The events of one taint list in an episode, in their order, each with the reward that it receives.
+"""List the events of a taint list in an episode, in order, each with its reward.
 
-An event is one execution of a site, a statement of the taint list.
+An event is one execution of a site, which is a statement of the taint list.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ Steps = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class EventSequence:
-    """The start and the events of one thread in a taint list; columns have shape (events + 1,).
+    """The start and the events of a taint list in one thread; columns have shape (events + 1,).
 
-    `reward` is r for the last event of a step and 0 for the others; `scaled` is r·|f|, where f is the flow value.
+    `reward` is r for the last event of a step and 0 for others; `scaled` is r·|f|, where f is the flow value.
     """
 
     state: Ints
@@ -36,10 +36,11 @@ class EventSequence:
 def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence, ...]:
     """Return the events of a taint list; its n-th site has the global number `members[n]`, or -1 if unknown.
 
-    There is one sequence per thread, because events of two threads in one step have no order; there is at least one
-    sequence. The reward of a step goes to its last event; if several threads have events in the step, they get equal
-    shares. The reward of a step without events goes to the latest earlier step with events, or to the start of the
-    first sequence. The rewards therefore sum to the total of the episode. Events before the first cell are dropped.
+    There is one sequence per thread (at least one), because events of two threads in the same step have no order.
+
+    A step's reward goes to its last event. If several threads have events in the step, each gets an equal share. The
+    reward of a step without events goes to the latest earlier step with events, or to the start of the first sequence.
+    The rewards therefore sum to the episode's total. Events before the first cell are dropped.
     """
     index = _places(trace, members)
     known = (index >= 0) & (trace.event_cell >= 0)
@@ -62,7 +63,7 @@ def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence
 
 
 def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: Floats) -> EventSequence:
-    """Put the start before the events; the start receives the rewards of all steps before the first event."""
+    """Add the start before the events; it gets the rewards of all steps before the first event."""
     whole = np.empty(state.size + 1, np.int64)
     whole[0], whole[1:] = START, state
     columns = [np.empty(state.size + 1) for _ in range(3)]
@@ -72,7 +73,7 @@ def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: F
 
 
 def _places(trace: Trace, members: Sequence[int]) -> Steps:
-    """Return for each event the index of its site in the taint list, or -1 if absent; shape (events,)."""
+    """Return the index of each event's site in the taint list, or -1 if it is not in the list; shape (events,)."""
     place = np.full(max([*members, int(trace.site.max(initial=-1)), 0]) + 1, -1, dtype=np.int32)
     for n, site in enumerate(members):
         if site >= 0:
@@ -81,7 +82,7 @@ def _places(trace: Trace, members: Sequence[int]) -> Steps:
 
 
 def _given(step: Steps, thread: Steps | None, reward: Floats) -> tuple[float, Floats]:
-    """Return the reward of all steps before the first event, and the reward of each event, shape (events,)."""
+    """Return the rewards of all steps before the first event, and the reward of each event, shape (events,)."""
     given = np.zeros(step.size)
     last = np.ones(step.size, dtype=bool)
     np.not_equal(step[1:], step[:-1], out=last[:-1])

@@ -1,7 +1,7 @@
-"""Group-sequential testing: a comparison may end early at planned looks, which divide its risk (alpha spending).
+"""Group-sequential testing: a comparison may stop at planned looks, which share its risk (alpha spending).
 
-After a share t of the episodes, α·t² of the risk α is spent (Lan & DeMets 1983). The shares of all looks sum to α. By
-the union bound, the risk of a false alarm is then at most α, even though the looks depend on each other.
+After a share t of the episodes, α·t² of the risk α has been spent (Lan & DeMets 1983). The shares of all looks sum to
+α, so the risk of a false alarm is at most α (union bound), although the looks depend on each other.
 """
 
 from __future__ import annotations
@@ -24,28 +24,28 @@ class Look:
 
 
 def planned(episodes: int, looks: int) -> tuple[Look, ...]:
-    """Return at most `looks` looks; each has twice as many episodes as the one before, and the last one has all."""
+    """Return at most `looks` looks: each has twice as many episodes as the previous one, and the last has all."""
     return spending([episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)])
 
 
 def spending(ends: Sequence[int]) -> tuple[Look, ...]:
-    """Return looks after the given ascending numbers of episodes; together they spend all of α."""
+    """Return looks after these ascending numbers of episodes; together they spend all of α."""
     spent = [(end / ends[-1]) ** 2 for end in ends]
     shares = [after - before for before, after in zip([0.0, *spent], spent, strict=False)]
     return tuple(Look(end, share) for end, share in zip(ends, shares, strict=True))
 
 
 def certain(difference: Difference) -> bool:
-    """Return whether the verdict is final: both the decrease and a region of cells are significant."""
+    """Return whether the verdict is final: both the decrease and the region are significant."""
     region = difference.region
     return difference.verdict.result == "degraded" and bool(region.cells or region.novel)
 
 
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
-    """Return the result of the last look; its p-values and its interval are adjusted for all looks.
+    """Return the result of the last look, with p-values and interval adjusted for all looks.
 
-    An adjusted p-value is the smallest p / share over the looks. The interval is computed with the risk of the last
-    look, so it is valid no matter at which look the comparison ends.
+    An adjusted p-value is the smallest p / share over the looks. The interval uses the risk of the last look, so it is
+    valid at whichever look the comparison stops.
     """
     last = seen[-1][1]
     p_drift, p_loss, p_failures = (

@@ -1,4 +1,4 @@
-"""Compute a confidence interval of the shift between two groups by inverting a studentised permutation test.
+"""Compute a confidence interval for the shift between two groups by inverting a studentised permutation test.
 
 The interval is exact if the groups differ by a constant, even if they are skewed (Janssen 1997).
 """
@@ -17,21 +17,21 @@ from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.seeds import generator
 
-COARSE = 30  # number of bisection steps; p-values from shuffles are too coarse to need more
+COARSE = 30  # bisection steps; p-values from shuffles are not precise enough for more
 LEAST_PERMUTATIONS = 999
-# expected number of more extreme shuffles at the requested risk
+# number of shuffles expected to be more extreme at the requested risk
 PER_RISK = 20
 MOST_PERMUTATIONS = 40_000
-AT_ONCE = 2_000  # number of shuffles drawn together; takes a few MB
+AT_ONCE = 2_000  # number of shuffles drawn at once; takes a few MB
 
 
 def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     """Return the smallest and largest shift that a permutation test at `risk` does not reject.
 
-    The inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
+    Inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
     """
     difference = float(offline.mean() - online.mean())
-    # the groups do not overlap if one is shifted by more than this value
+    # a shift by more than this separates the groups completely
     unit = float(np.ptp(offline) + np.ptp(online))
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit
@@ -42,7 +42,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     group, whole = (_sums(after, before, some) for some in (rows, np.arange(offline.size + online.size)))
 
     def refuted(shift: float, sign: float) -> bool:
-        """Return whether the deployed group, after this shift, is significantly too low (or too high)."""
+        """Return whether the deployed group, shifted by this, is significantly too low (or too high)."""
         return _studentised_p(group, whole, shift, sign) <= risk
 
     if not refuted(-1.0, 1.0) or not refuted(1.0, -1.0):
@@ -54,9 +54,9 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=8)
 def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
-    """Return the rows that form the first group in each shuffle, shape (groups, chosen).
+    """Return the rows of the first group in each shuffle, shape (groups, chosen).
 
-    The observed group is left out. The result has fewer groups than `shuffles` if the samples do not have that many.
+    The observed group is left out. There are fewer groups than `shuffles` if the samples allow no more.
     """
     if enumerable(rows, chosen, shuffles):
         return other_groups(rows, chosen)
@@ -70,10 +70,10 @@ def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
 
 @dataclass(frozen=True)
 class _Sums:
-    """Sums over the rows of a group: x is the value of a row, and d is 1 for a deployed episode, else 0.
+    """Sums over the rows of a group: x is a row's value, and d is 1 for a deployed episode, otherwise 0.
 
-    The sums have shape (shuffles,), or () for a single group. Since d² = d, the sums of x + t·d and of (x + t·d)² can
-    be computed from them for every shift t.
+    The sums have shape (shuffles,), or () for a single group. Because d² = d, they give the sums of x + t·d and of (x +
+    t·d)² for every shift t.
     """
 
     rows: int
@@ -83,7 +83,7 @@ class _Sums:
     deployed_value: Floats  # Σx·d
 
     def around(self, mean: float, shift: float) -> tuple[Floats, Floats]:
-        """Return Σ(x + t·d - m) and Σ(x + t·d - m)² for the mean m and the shift t, in the shape of the sums."""
+        """Return Σ(x + t·d - m) and Σ(x + t·d - m)² for mean m and shift t, in the shape of the sums."""
         value = self.value + shift * self.deployed
         square = self.square + shift * (2.0 * self.deployed_value + shift * self.deployed)
         return value - mean * self.rows, square - 2.0 * mean * value + mean * mean * self.rows
@@ -98,7 +98,7 @@ def _sums(deployed: Floats, designed: Floats, rows: Ints) -> _Sums:
 
 
 def _studentised_p(group: _Sums, whole: _Sums, shift: float, sign: float) -> float:
-    """Return the one-sided p-value of the hypothesis that a shifted group is lower (t for unequal variances).
+    """Return the one-sided p-value for a shifted group being lower (t for unequal variances).
 
     The first row of `group` is the observed one.
     """

@@ -1,4 +1,4 @@
-"""Check, once when a recording is read, that its columns are consistent."""
+"""Check that the columns of a recording are consistent, once, when it is read."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, ListSample, S
 
 
 def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
-    """Raise DamagedError if columns refer to missing episodes, cells or states, or contain invalid values.
+    """Raise DamagedError if columns refer to missing episodes, cells or states, or have invalid values.
 
-    `sensors` is the length of a cell. `tables` holds a learned table per taint list, of shape (cells, sites).
+    `sensors` is the number of sensors in a cell. `tables` has one learned table per taint list, shape (cells, sites).
     """
     if not sample.episodes or len(set(sample.seeds)) < sample.episodes:
         raise DamagedError("it does not have one seed per episode")

@@ -1,8 +1,8 @@
-"""Divide a fixed number of episodes among several comparisons: remaining episodes go to an undecided comparison.
+"""Divide a fixed number of episodes among several comparisons; spare episodes go to undecided ones.
 
-The looks of every comparison are planned before the first episode. Together, they spend the whole α of the comparison.
-The sum of their shares bounds the error of the comparison, no matter at which look it ends. All data, including those
-of other comparisons, may therefore be used to choose the comparison that continues.
+The looks of every comparison are planned before the first episode and together spend its whole α. This bounds the
+comparison's error, whichever look is its last. All data, including those of other comparisons, may therefore be used to
+choose the comparison that continues.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 from pytest_tarl.learning.sequential import Look, planned, spending
 
-MOST = 1.5  # maximum episodes of a comparison, in even shares of the total
+MOST = 1.5  # maximum number of episodes of a comparison, in even shares of the total
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of a comparison: the planned looks, and the number of episodes after which this part ends."""
+    """A part of a comparison: its planned looks, and the number of episodes at which it ends."""
 
     looks: tuple[Look, ...]
     episodes: int
@@ -27,7 +27,7 @@ class Stage:
 class Standing:
     """The state of a comparison after a look: its number of episodes, and whether it is decided.
 
-    `p_worse` is the smaller of two p-values: that of a loss, and that of more failures.
+    `p_worse` is the smaller of the p-values for a loss and for more failures.
     """
 
     episodes: int
@@ -36,10 +36,10 @@ class Standing:
 
 
 def schedule(total: int, comparisons: int, looks: int) -> tuple[Look, ...]:
-    """Return the looks of each comparison; the first looks of all comparisons fit into `total` episodes.
+    """Return the looks of each comparison; all comparisons can have their first looks within `total` episodes.
 
-    Each comparison gets the looks that fit into an even share of the episodes, and one more look at MOST times that
-    share. The last look is planned only if every other comparison can still reach its first look.
+    Each comparison gets the looks that fit into an even share of the episodes, plus one more look at MOST times that
+    share. This last look is planned only if every other comparison can still reach its first one.
     """
     even = total // comparisons
     ends = [look.episodes for look in planned(even, looks)]
@@ -57,8 +57,8 @@ def next_look(standing: Standing, looks: Sequence[Look]) -> Look | None:
 def chosen(standings: Sequence[Standing], looks: Sequence[Look], left: int) -> int | None:
     """Return the index of the comparison that continues, or None if none can reach its next look.
 
-    `left` is the number of episodes left. The undecided comparison with the smallest p-value continues, since it is
-    nearest to a decision. If several have the same p-value, the first of them continues.
+    `left` is the number of remaining episodes. The undecided comparison with the smallest p-value continues, because it
+    is closest to a decision; if several have the same p-value, the first one continues.
     """
     able = [
         number

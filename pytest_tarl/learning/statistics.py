@@ -1,4 +1,4 @@
-"""Compute sufficient statistics of a recorded episode, for the utility and the comparison.
+"""Compute the sufficient statistics of an episode, for the utility and the comparison.
 
 Statistics of several episodes can be merged (merging.py).
 """
@@ -30,13 +30,13 @@ from pytest_tarl.sensors import Cell
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
-CANCELLED = 1e-13  # a sum below this share of its magnitudes is a rounding error
-# maximum number of possible pairs per row for counting in a table; more pairs are sorted
+CANCELLED = 1e-13  # a sum below this share of its terms' magnitudes is a rounding error
+# pairs are counted in a table if there are at most this many possible pairs per row; otherwise they are sorted
 DENSE = 4
 
 
 def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]) -> Sample:
-    """Return the statistics of one episode; `lists` holds the global site numbers of each taint list."""
+    """Return the statistics of one episode; `lists` has the global site numbers of each taint list."""
     cells = tuple(sorted(trace.cells))
     sorted_trace = _relabelled(trace, cells)
     names = tuple(sorted(trace.parts))
@@ -53,7 +53,7 @@ def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]
 
 
 def _relabelled(trace: Trace, cells: Sequence[Cell]) -> Trace:
-    """Return the trace with its cells numbered as in `cells`, which must contain all of them."""
+    """Return the trace with its cells numbered as in `cells`, which must contain them all."""
     index = {cell: i for i, cell in enumerate(cells)}
     place = np.array([*(index[cell] for cell in trace.cells), -1], dtype=np.int32)
     return replace(
@@ -79,16 +79,16 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
 
 
 def total_reward(reward: Floats) -> float:
-    """Return the sum of an episode's rewards, shape (steps,); exactly 0 if they cancel out."""
+    """Return the sum of an episode's rewards, shape (steps,); exactly 0 if they cancel."""
     total, size = float(np.add.reduce(reward)), float(np.add.reduce(np.abs(reward)))
     return total if abs(total) > CANCELLED * size else 0.0
 
 
 def total_rewards(reward: Floats, ends: Ints) -> Floats:
-    """Return the total reward of each episode, identical to the last bit to the result of `total_reward`.
+    """Return the total reward of each episode, with the same bits as `total_reward`.
 
-    `ends` has shape (episodes + 1,) and holds the boundaries of the episodes. Episodes of equal length are summed
-    together, because numpy sums a row of a matrix to the same bits as the row alone.
+    `ends`, of shape (episodes + 1,), has the boundaries of the episodes. Episodes of equal length are summed together:
+    numpy gives the sum of a matrix row the same bits as the sum of the row alone.
     """
     lengths = np.diff(ends)
     found = np.zeros(lengths.size)
@@ -100,7 +100,7 @@ def total_rewards(reward: Floats, ends: Ints) -> Floats:
 
 
 def summed(index: Ints, column: Floats, size: int) -> Floats:
-    """Return the sum of the column at each index, shape (size,); exactly 0 if the values cancel out."""
+    """Return the sum of the column at each index, shape (size,); exactly 0 if the values cancel."""
     return _cancelled(sum_by(index, column, size), sum_by(index, np.abs(column), size))
 
 
@@ -151,16 +151,16 @@ def _followers(state: Ints) -> Ints:
 
 
 def _flows(state: Ints, flow: Floats, width: int) -> Floats:
-    """Return, for each site, the sum of |f| over all cells, shape (1, sites)."""
+    """Return each site's sum of |f| over all cells, shape (1, sites)."""
     events = state != START
     return sum_by((state[events] - 1) % max(width, 1), flow[events], width)[None, :]
 
 
 def _unique_pairs(first: Ints, second: Ints, inverse: bool = True) -> tuple[tuple[Ints, Ints], Ints, Ints]:
-    """Return the distinct (first, second) pairs in order, the index of each row's pair, and the counts.
+    """Return the distinct (first, second) pairs in order, each row's pair index, and the counts.
 
-    The index is computed only if `inverse` is set. If few pairs are possible, they are counted in a table, which is
-    much faster than sorting.
+    The index is computed only with `inverse`. If few pairs are possible, they are counted in a table, which is much
+    faster than sorting.
     """
     span = int(max(first.max(initial=0), second.max(initial=0))) + 2
     codes = first * span

@@ -1,7 +1,7 @@
-"""Bounds by Student's t on a mean and on a difference of means, for totals that are about normal.
+"""Student's t bounds on a mean and on a difference of means, for totals that are roughly normal.
 
-For skewed totals and few episodes, their coverage is too low. Only learning/bounds.py, which documents this, may use
-them.
+With few episodes and skewed totals, they hold less often than stated. Only learning/bounds.py, which documents this,
+may use them.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from statistics import NormalDist, fmean, variance
 
 import numpy as np
 
-FEW_DEGREES = 20  # below this number of degrees of freedom, the density is integrated
+FEW_DEGREES = 20  # below this many degrees of freedom, the density is integrated
 
 
 def difference_bounds(first: Sequence[float], second: Sequence[float], risk: float) -> tuple[float, float]:
     """Return one-sided lower and upper bounds on mean(first) - mean(second), each at `risk` (Welch)."""
-    unit = max(map(abs, (*first, *second))) or 1.0  # scaled so that squares neither overflow nor underflow
+    unit = max(map(abs, (*first, *second))) or 1.0  # scaled so that squares do not overflow or underflow
     parts = [_spread([value / unit for value in group]) for group in (first, second)]
     spread = sqrt(sum(parts))
     freedom = [part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (first, second), strict=True)]
@@ -34,12 +34,12 @@ def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, floa
     return fmean(values) - reach, fmean(values) + reach
 
 
-@lru_cache(maxsize=1024)  # the integral is slow, and a search asks for few different ones
+@lru_cache(maxsize=1024)  # the integral is slow, and a search uses few different ones
 def student_quantile(probability: float, degrees: float) -> float:
     """Return a quantile of Student's t above the median.
 
-    For many degrees of freedom, use the expansion 26.7.5 of Abramowitz & Stegun. For few degrees, where the expansion
-    is far too low, integrate the density over θ = atan(t / √degrees), which is proportional to cosᵈ⁻¹θ.
+    For many degrees of freedom, use expansion 26.7.5 of Abramowitz & Stegun. For few degrees of freedom, this expansion
+    is far too low; instead, integrate the density over θ = atan(t / √degrees), which is proportional to cosᵈ⁻¹θ.
     """
     if degrees < FEW_DEGREES:
         angle = np.linspace(0.0, np.pi / 2, 20_001)

@@ -1,8 +1,8 @@
 """Tables of recorded episodes: one row per (episode, transition) or (episode, state).
 
-A cell is a combination of sensor bins; a site is a statement of a taint list. The states of a taint list with `width`
-sites are numbered: 0 is the start of an episode, and 1 + cell·width + n is site n in a cell. `END` is the state after
-the last event of an episode.
+A cell is a combination of sensor bins; a site is a statement of a taint list. In a taint list with `width` sites, state
+0 is the start of an episode, and state 1 + cell·width + n is site n in a cell. `END` is the state after an episode's
+last event.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ END = -1
 class Chain:
     """Transitions between sensor cells, one per simulation step.
 
-    Columns have shape (rows,), except `parts`, which has shape (rows, parts).
+    Columns have shape (rows,), except `parts`: (rows, parts).
     """
 
     episode: Ints
@@ -48,7 +48,7 @@ class Edges:
 
 @dataclass(frozen=True)
 class Visits:
-    """For each state of one taint list, the sums of r, of r·|f|, and of their squares; columns have shape (rows,)."""
+    """The sums of r, of r·|f|, and of their squares for each state of a taint list; columns have shape (rows,)."""
 
     episode: Ints
     state: Ints
@@ -61,7 +61,7 @@ class Visits:
 
 @dataclass(frozen=True)
 class ListSample:
-    """The statistics of one taint list with `width` sites; `flow` is the sum of |f|, shape (episodes, sites)."""
+    """The statistics of a taint list with `width` sites; `flow` is the sum of |f|, shape (episodes, sites)."""
 
     width: int
     edges: Edges
@@ -78,9 +78,9 @@ class ListSample:
 
 @dataclass(frozen=True)
 class Judgements:
-    """Results of formulas; columns have shape (episodes, formulas).
+    """The results of formulas; columns have shape (episodes, formulas).
 
-    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, or NaN if there is none.
+    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s; NaN if there is none.
     """
 
     formulas: tuple[str, ...]  # texts of the formulas, sorted
@@ -90,7 +90,7 @@ class Judgements:
 
 @dataclass(frozen=True)
 class Sample:
-    """Episodes in the order of their seeds; `total`, `passed` and `steps` have shape (episodes,), cells are sorted."""
+    """Episodes in the order of their seeds, with sorted cells; `total`, `passed`, `steps` have shape (episodes,)."""
 
     cells: tuple[Cell, ...]
     seeds: tuple[int, ...]

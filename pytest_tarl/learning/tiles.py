@@ -1,9 +1,9 @@
 """The parametric utility: tile coding (Sutton & Barto 2018, §9.5.4), solved by least squares.
 
-A sensor with `tilings=T` has T grids of tiles. Each tile is T bins wide, and each grid is shifted by one bin. The
-utility of a cell is the sum of the weights of the T tiles that contain the cell, one tile per grid. Neighbouring cells
-have common tiles, so they learn from each other. Sensors without tilings keep their bins. The weights are fitted to the
-same counts as the table (least-squares temporal differences, Bradtke & Barto 1996).
+A sensor with `tilings=T` has T grids of tiles. A tile is T bins wide, and each grid is shifted by one bin. The utility
+of a cell is the sum of the weights of the T tiles that contain it, one tile per grid. Neighbouring cells share tiles,
+so they learn from each other. Sensors without tilings keep their bins. The weights are fitted to the same counts as the
+table (least-squares temporal differences, Bradtke & Barto 1996).
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSam
 from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
 from pytest_tarl.sensors import Cell, Sensor
 
-# ridge added to the diagonal, in mean numbers of visits; tilings leave some weights undetermined
+# ridge added to the diagonal, in mean numbers of visits; needed because tilings leave some weights undetermined
 RIDGE = 1e-6
 DENSE = 1500  # maximum number of weights for a direct solution
 
 
 @dataclass(frozen=True)
 class Tiles:
-    """The tiles of every cell; `of` has shape (cells, tilings) and holds tile numbers from 0 to `count` - 1."""
+    """The tiles of every cell; `of`, of shape (cells, tilings), has tile numbers from 0 to `count` - 1."""
 
     of: Ints
     count: int
@@ -46,8 +46,8 @@ def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
 def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
     """Return the tile of each cell in one grid, shape (cells,).
 
-    The shift of a sensor is the number of the grid times an odd number of bins, a different odd number for each sensor,
-    so that tile boundaries do not coincide.
+    A sensor's shift is the grid's number times an odd number of bins. Each sensor has a different odd number, so that
+    tile boundaries do not coincide.
     """
     columns = []
     for d, sensor in enumerate(sensors):
@@ -70,7 +70,7 @@ def tiled_chain(chain: Chain, cells: int, tiles: Tiles | None, gamma: float = GA
 def tiled_batch(
     recorded: ListSample, cells: int, scale: float, tiles: Tiles | None, gamma: float = GAMMA_EVENT
 ) -> Floats:
-    """Return q(x, n), shape (cells, sites), with NaN for unvisited entries; each site has its own tiles."""
+    """Return q(x, n), shape (cells, sites), NaN where unvisited; each site has its own tiles."""
     if tiles is None:
         return batch(recorded, cells, scale, gamma)
     edges, visits, width = recorded.edges, recorded.visits, recorded.width
@@ -85,7 +85,7 @@ def tiled_batch(
 
 
 def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles | None) -> Floats:
-    """Return the mean contribution of a visit in each cell, shape (cells,); `brought` is a sum over `count` visits."""
+    """Return a visit's mean contribution in each cell, shape (cells,); `brought` is a sum over `count` visits."""
     total, visits = sum_by(cell, brought, cells), sum_by(cell, count, cells)
     if tiles is None:
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -104,7 +104,7 @@ def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints
     start, end, weight = state[inside], next_state[inside], gamma * count[inside]
 
     def spread(values: Floats) -> Floats:
-        """Add the value of each state, shape (states,), to all tiles of this state; return shape (weights,)."""
+        """Add the value of each state, shape (states,), to all its tiles; return shape (weights,)."""
         return sum_by(of.ravel(), np.repeat(values, grids), size)
 
     def system(weights: Floats) -> Floats:

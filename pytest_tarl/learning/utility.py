@@ -1,8 +1,8 @@
-"""Compute the utility (the expected reward from a site in a cell onwards) from the statistics.
+"""Compute the utility from the statistics: the expected reward from a site in a cell onwards.
 
 The learning signal is ρ = r·[last event of its step] + r·|f|/F, with the reward-scaled flow value of Lyons & Zahra
-2020; F is the mean |f| of the recording. `batch` computes the fixed point to which SARSA converges, q = (I - γP)⁻¹ρ̄,
-directly from the counts.
+2020; F is the recording's mean |f|. `batch` computes the fixed point of SARSA, q = (I - γP)⁻¹ρ̄, directly from the
+counts.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
 DENSE = 150  # maximum number of states for a direct solution
-PRECISE = 1e-12  # sweeps end when all utilities change by at most this share of the largest utility
-STEPS = 300  # maximum number of biconjugate gradient steps, after which sweeps improve the solution
+PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest
+STEPS = 300  # maximum number of biconjugate gradient steps, before sweeps improve the solution
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
-    """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN for a state that was never left.
+    """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN for states that were never left.
 
-    `reward` is the summed reward by state, shape (states,). Transitions to `END` end the episode.
+    `reward` is the sum of rewards by state, shape (states,). Transitions to `END` end the episode.
     """
     states = reward.size
     visits = sum_by(state, count, states)
     seen = np.flatnonzero(visits)
     place = np.full(states + 1, -1, dtype=np.int64)
     place[seen] = np.arange(seen.size)
-    inside = place[next_state] >= 0  # END is -1, so it selects the last entry, which stays -1
+    inside = place[next_state] >= 0  # END is -1 and so selects the last entry, which stays -1
     start, end, mean = place[state[inside]], place[next_state[inside]], visits[seen]
     weight = gamma * count[inside] / mean[start]
     solve = _solved if gamma >= 1.0 or seen.size <= DENSE else _approached
@@ -40,14 +40,14 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
 
 
 def _united(start: Ints, end: Ints, weight: Floats) -> tuple[Ints, Ints, Floats]:
-    """Add up the weights of equal transitions over all episodes."""
+    """Add the weights of equal transitions over all episodes."""
     span = int(end.max(initial=0)) + 1
     codes, place = np.unique(start * span + end, return_inverse=True)
     return codes // span, codes % span, sum_by(place, weight, codes.size)
 
 
 def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
-    """Solve q = ρ̄ + Wq directly; W holds the weights of the transitions."""
+    """Solve q = ρ̄ + Wq directly; W has the weights of the transitions."""
     system = np.eye(mean.size)
     np.subtract.at(system, (start, end), weight)
     return np.linalg.solve(system, mean).astype(np.float64, copy=False)
@@ -56,8 +56,8 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     """Solve q = ρ̄ + Wq by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
-    The method needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by the
-    factor γ. If the gradients converged, one or two sweeps suffice; if they broke down, more are needed.
+    This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by the factor
+    γ. After gradients that converged, one or two sweeps suffice; after a breakdown, more are needed.
     """
 
     def ahead(values: Floats) -> Floats:
@@ -72,7 +72,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 
 
 def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
-    """Return the best solution of system(x) = right that biconjugate gradients found, shape (states,)."""
+    """Return the best solution of system(x) = right found by biconjugate gradients, shape (states,)."""
     best = solution = right.copy()
     shadow = residual = right - system(solution)
     direction = residual.copy()
@@ -101,7 +101,7 @@ def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
 
 
 def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_EVENT) -> Floats:
-    """Return q(x, n), shape (cells, sites), with NaN for unvisited entries.
+    """Return q(x, n), shape (cells, sites), NaN where unvisited.
 
     `scale` is F; infinity omits the flow term.
     """
@@ -114,6 +114,6 @@ def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_E
 
 
 def chain_utility(chain: Chain, cells: int, gamma: float = GAMMA_STEP) -> Floats:
-    """Return U(x) on the chain of sensor cells, shape (cells,); NaN if never visited."""
+    """Return U(x) on the chain of sensor cells, shape (cells,); NaN if a cell was never visited."""
     reward = sum_by(chain.cell, chain.reward, cells)
     return fixed_point(chain.cell, chain.next_cell, chain.count, reward, gamma)
