@@ -1,4 +1,4 @@
-"""Formats of numbers: rewards with their intervals, p-values, and effect sizes."""
+"""Format numbers: rewards with their intervals, p-values and effect sizes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.model import Comparison
 from pytest_tarl.report.guarantee_words import percent
 
-CONFIDENCE = 0.95  # confidence of the interval around an average
+CONFIDENCE = 0.95  # confidence of the interval of an average
 
 
 def amount(value: float | None) -> str:
@@ -24,7 +24,7 @@ def amount(value: float | None) -> str:
 
 
 def expected(value: float) -> float:
-    """Remove floating-point noise by rounding, such as 11.999999999999998 to 12.0."""
+    """Round away floating-point noise, such as 11.999999999999998."""
     return float(f"{value:.10g}")
 
 
@@ -51,7 +51,7 @@ def p_value(value: float) -> str:
 
 
 def atr(comparison: Comparison, world: str) -> float | None:
-    """Return the average total reward (Eq. 3) of `offline`, `online`, `repaired` or `nominal_repaired`."""
+    """Return the average total reward (Eq. 3) in `offline`, `online`, `repaired` or `nominal_repaired`."""
     totals = comparison.totals.get(world, ())
     return fmean(totals) if totals else None
 
@@ -62,6 +62,6 @@ def running_mean(totals: Sequence[float]) -> list[float]:
 
 
 def deviations(effect: float) -> str:
-    """Format an effect size of at most 100 standard deviations."""
+    """Format an effect size; above 100 standard deviations, show 100."""
     size = abs(effect)
     return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"

@@ -31,9 +31,9 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
 
 
 def annotation(comparison: Comparison, root: Path) -> str:
-    """Return the GitHub workflow command that marks the line of the first culprit; empty if there is none.
+    """Return the GitHub workflow command that marks the first culprit's line; empty if there is no culprit.
 
-    The path in it is relative to the checkout; `root` may be a subfolder of the checkout.
+    The path is relative to the checkout; `root` may be a subfolder of it.
     """
     if not _guilty(comparison):
         return ""

@@ -1,4 +1,4 @@
-"""The reward by drift size, as text and as a drawing."""
+"""Show the reward by drift size, as text and as a drawing."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from statistics import fmean
 from pytest_tarl.model import Band, Comparison, Sizes
 from pytest_tarl.report import amounts
 
-WORLDS = ("online", "repaired")  # the drifted world before and after the repair
-WIDTH, HEIGHT = 640, 240  # size of the drawing without its margins (pixels)
+WORLDS = ("online", "repaired")  # drifted world without and with the repair
+WIDTH, HEIGHT = 640, 240  # px, without margins
 
 
 @dataclass(frozen=True)
 class Row:
-    """The mean rewards in an interval of a range; None without episodes."""
+    """The mean rewards in one interval of a range; None if it has no episodes."""
 
     band: Band
     before: float | None
@@ -25,13 +25,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Plot:
-    """The drawing of a range, with points in pixels and labelled ticks."""
+    """The drawing for one range, with points in pixels and labelled ticks."""
 
     part: str
     points: Mapping[str, tuple[tuple[float, float], ...]]
     across: tuple[tuple[float, str], ...]
     up: tuple[tuple[float, str], ...]
-    offline: float  # y coordinate of the mean reward in the designed world, in pixels
+    offline: float  # y coordinate of the designed world's mean reward, in pixels
     rows: tuple[Row, ...]
 
 

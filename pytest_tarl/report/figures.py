@@ -1,4 +1,4 @@
-"""The figures of the page as data for its script."""
+"""Provide the data of the page's figures for its script."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # maximum number of rows, one per value of the sensor that splits the figure
+MOST_ROWS = 6  # maximum number of rows (one per value of the sensor that splits the figure)
 QUIET = 0.25  # minimum range of the scale for differences, as a share of the range of utilities
 DIGITS = 5  # number of significant digits of numbers on the page
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The sensors along the axis and for the rows of a figure."""
+    """The sensors of a figure's axis and rows."""
 
     position: int
     split: int | None
@@ -37,7 +37,7 @@ class Plane:
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as axis, and a category for the rows."""
+    """Choose the first numeric sensor for the axis, and a category for the rows."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
@@ -45,14 +45,14 @@ def plane(comparison: Comparison) -> Plane:
 
 
 def _covered(comparison: Comparison, dimension: int) -> float:
-    """Return the share of a sensor's values that occur in the region."""
+    """Return the share of a sensor's values that are in the region."""
     seen = {cell[dimension] for cell in comparison.cells}
     region = (*comparison.region.cells, *comparison.region.novel)
     return len({cell[dimension] for cell in region} & seen) / len(seen) if region and seen else 1.0
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
-    """Return utilities and their difference by site and position; None if unvisited."""
+    """Return the utilities and their difference by site and position; None if unvisited."""
     if not comparison.sensors or not comparison.cells:
         return None
     shown = plane(comparison)
@@ -73,7 +73,7 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
 
 
 def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
-    """Return the values with a row of their own, or [None]."""
+    """Return the values that get their own row, or [None]."""
     if shown.split is None:
         return [None]
     counted: dict[int, int] = {}
@@ -110,7 +110,7 @@ def _row(
 
 
 def _grid(values: Matrix, places: Sequence[int], bins: Sequence[int]) -> list[list[float | None]]:
-    """Average the cells at each position, shape (sites, positions); None if unvisited."""
+    """Average the cells at each position, shape (sites, positions); None if none was visited."""
     column = np.asarray(places, dtype=np.intp) - bins[0]
     known = ~np.isnan(values)
     total = np.zeros((len(bins), values.shape[1]))
@@ -134,7 +134,7 @@ def _axis(sensor: Sensor, dimension: int, bins: Sequence[int], vocabulary: Vocab
 
 
 def _edges(sensor: Sensor, first: int, last: int) -> tuple[float, float]:
-    """Return the bin edges on the axis, with open bins one bin wide."""
+    """Return the axis's bin edges; bins without a limit are drawn one bin wide."""
     if not sensor.bins or sensor.low is None or sensor.high is None:
         return first - 0.5, last + 0.5
     width = (sensor.high - sensor.low) / sensor.bins
@@ -147,7 +147,7 @@ def _span(indices: Iterable[int]) -> list[int]:
 
 
 def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
-    """Return the least and the largest shown utility, and the largest absolute difference."""
+    """Return the lowest and highest utility shown, and the largest absolute difference."""
     values, changes = [], [0.0]
     for row in rows:
         for before, after in zip(chain(*row["offline"]), chain(*row["online"]), strict=True):
@@ -158,7 +158,7 @@ def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
 
 
 def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return the running mean of the total rewards of all curves."""
+    """Return the running mean of the total reward for every curve."""
     drift = comparison.drift or "deployed"
     curves = [
         _curve("designed", "offline", comparison.totals.get("offline", ())),
@@ -191,5 +191,5 @@ def _curve(name: str, kind: str, totals: Sequence[float], labels: Sequence[str] 
 
 
 def number(value: float) -> float | None:
-    """Return a number with DIGITS significant digits; None if not finite."""
+    """Return a number with DIGITS significant digits; None if it is not finite."""
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

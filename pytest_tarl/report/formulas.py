@@ -1,4 +1,4 @@
-"""The rows of formulas: robustness per world and first violation."""
+"""Report formulas: their robustness in each world, and the first violation."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def margin(value: float) -> str:
-    """Format a robustness; show infinitesimal values, which strict comparisons produce, as 0."""
+    """Format a robustness; infinitesimal values (from strict comparisons) are shown as 0."""
     return amounts.amount(0.0 if abs(value) < NEGLIGIBLE else value)
 
 

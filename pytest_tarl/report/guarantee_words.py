@@ -1,4 +1,4 @@
-"""Bounds for future episodes, in sentences."""
+"""Describe the bounds for future episodes in sentences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WORLDS = {"offline": "designed", "repaired": "repaired", "nominal_repaired": "de
 
 
 def sentences(stated: Guarantee) -> Iterator[str]:
-    """Yield one sentence per bound, or one about a single world."""
+    """Yield one sentence per bound, or one sentence if all episodes were equal."""
     sure = f"with {100 * stated.success.confidence:.5g} % confidence"
     every = "every one" if stated.passed == stated.episodes else f"{stated.passed}"
     if not stated.varied:
@@ -54,14 +54,14 @@ def brief(stated: Guarantee) -> Iterator[str]:
 
 
 def worlds(comparison: Comparison) -> Iterator[tuple[str, Guarantee]]:
-    """Yield the displayed name and the bounds of each world that has bounds."""
+    """Yield name (as displayed) and bounds of each world that has bounds."""
     for world, name in WORLDS.items():
         if world in comparison.stated:
             yield name, comparison.stated[world]
 
 
 def percent(share: float) -> str:
-    """Format a share, rounded down to 0.1 % so that a lower bound remains valid."""
+    """Format a share, rounded down to 0.1 % so that it stays a lower bound."""
     return f"{math.floor(1000 * share + 1e-9) / 10:.1f} %".replace(".0 %", " %")
 
 

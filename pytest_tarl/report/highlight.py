@@ -1,4 +1,4 @@
-"""Convert Python lines and patches to highlighted HTML. pygments escapes all untrusted text."""
+"""Convert Python lines and patches to highlighted HTML; pygments escapes all untrusted text."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _HUNK = re.compile(r"@@ -(\d+)(?:,(\d+))? \+(\d+)(?:,(\d+))? @@")
 
 @dataclass(frozen=True, slots=True)
 class PatchLine:
-    """One line of a diff: old and new number, and HTML."""
+    """One line of a diff: old and new line number, and HTML."""
 
     kind: Kind
     old: int | None
@@ -55,5 +55,5 @@ def patch_lines(diff: str) -> Iterator[PatchLine]:
 
 
 def code_free(text: str) -> str:
-    """Escape a line that is not code, for HTML."""
+    """Escape a line that is not code for HTML."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -1,4 +1,4 @@
-"""The report page: one self-contained HTML file."""
+"""Write the report page: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def write(comparison: Comparison, path: Path, *, title: str | None = None) -> No
 
 
 def render(comparison: Comparison, *, title: str | None = None) -> str:
-    """Return the page's text. Raise TarlError without the extra `report`."""
+    """Return the page as HTML. Raise TarlError if the extra `report` is not installed."""
     templates = environment(asset, NEEDED)
     from pytest_tarl.report import highlight
 
@@ -78,9 +78,9 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
 
 
 def environment(source: Callable[[str], str], needed: Sequence[str]) -> Any:
-    """Return the jinja2 environment of a page; `source` returns the text of a template by name.
+    """Return the jinja2 environment of a page; `source` returns a template's text by name.
 
-    Raise TarlError if one of the packages that the page needs is missing.
+    Raise TarlError if a package that the page needs is missing.
     """
     _require(needed)
     return _templates(source)
@@ -88,7 +88,7 @@ def environment(source: Callable[[str], str], needed: Sequence[str]) -> Any:
 
 @cache
 def _templates(source: Callable[[str], str]) -> Any:
-    # One environment per page, because compiling its templates takes about 0.2 s.
+    # there is one environment per page, because compiling its templates takes about 0.2 s
     import jinja2
 
     found = jinja2.Environment(
@@ -109,7 +109,7 @@ def _require(needed: Sequence[str]) -> None:
 
 
 def asset(name: str) -> str:
-    """Return the text of a file that the page includes, by name."""
+    """Return a file that the page includes, as text."""
     return resources.files(__package__).joinpath("page").joinpath(name).read_text("utf-8")
 
 
@@ -121,12 +121,12 @@ def _library() -> str:
 
 
 def in_script(data: Any) -> str:
-    """Return data as JSON that cannot close the script element."""
+    """Return data as JSON that is safe inside a script element."""
     return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).translate(_IN_SCRIPT)
 
 
 def parts(text: str) -> list[str]:
-    """Split a path or test id where a line may break."""
+    """Split a path or test id where lines may be wrapped."""
     return re.findall(r".+?(?:::|[/_.]|$)", text)
 
 
@@ -192,7 +192,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
 
 
 def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether the figure clips the designed curve."""
+    """Return whether the figure clips the curve of the designed world."""
     offline = [len(curve["mean"]) for curve in curves if curve["kind"] == "offline"]
     others = [len(curve["mean"]) for curve in curves if curve["kind"] != "offline"]
     return bool(offline and others) and max(offline) > max(others)
@@ -221,7 +221,7 @@ def _list(
 
 
 def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str]:
-    """Yield notes on what the utility figure shows, and on what it omits."""
+    """Yield notes on what the utility figure shows and omits."""
     shown = plane(comparison)
     if others := shown.others(comparison.sensors):
         yield f"Each value is the mean over {' and '.join(others)}."
@@ -232,7 +232,7 @@ def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str
 
 
 def _largest_change(figure: Mapping[str, Any]) -> str:
-    """Describe the largest difference between the utilities of both worlds."""
+    """Describe the largest difference between the two worlds' utilities."""
     found = [
         (on - off, row["title"], site, figure["axis"]["names"][column])
         for row in figure["rows"]
@@ -249,7 +249,7 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
 
 
 def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:
-    """Describe the last value of each curve in the reward figure (alternative text)."""
+    """Describe the last value of each reward curve (alternative text)."""
     ends = []
     for curve in curves:
         end = typeset(amounts.amount(curve["mean"][-1]))

@@ -1,4 +1,4 @@
-"""The result for other tools: one versioned JSON document per comparison, see `result.schema.json`."""
+"""Write the result for other tools: one versioned JSON document per comparison (see `result.schema.json`)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ WORLDS = ("offline", "online", "repaired", "nominal_repaired")
 
 
 def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> None:
-    """Write the result of a run; `episodes` holds numbers of episodes by kind: offline, online, search, acceptance.
+    """Write the result; `episodes` has the number of episodes by kind: offline, online, search, acceptance.
 
     Raises:
         TarlError: the file cannot be written.
@@ -95,7 +95,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
 
 
 def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return the mean reward per world and interval of a drift's ranges."""
+    """Return the mean reward for each world and each interval of a drift's ranges."""
     return [
         {
             "part": row.band.part,
@@ -111,8 +111,8 @@ def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
 def rectangles(cells: Iterable[Cell], sensors: Sequence[Sensor]) -> list[dict[str, list[Any]]]:
     """Cover cells with rectangles.
 
-    Each rectangle maps sensor names to closed intervals in the sensor's units; null is an open end. For a sensor with
-    text categories, both ends are the same category.
+    Each rectangle maps sensor names to closed intervals in the sensor's units; a missing limit is null. For a sensor
+    with text categories, both ends are the same category.
     """
     texts = [d for d, sensor in enumerate(sensors) if sensor.categories]
     return [
@@ -130,7 +130,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
-    """Return each site's largest slice, in order of appearance."""
+    """Return the largest slice of each site, in order of appearance."""
     kept: dict[str, Slice] = {}
     for one in slices:
         held = kept.get(one.site.id)
@@ -219,7 +219,7 @@ def _partial(partial: Partial) -> dict[str, Any]:
 
 
 def _tried(attempt: Attempt) -> dict[str, Any]:
-    """Return a tried repair candidate and its outcome as plain values."""
+    """Return a repair candidate and its outcome as plain values."""
     return {
         "what": attempt.what,
         "reason": attempt.reason or None,

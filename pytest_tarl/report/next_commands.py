@@ -1,4 +1,4 @@
-"""Commands that repeat the comparison and take the next step."""
+"""Suggest commands that repeat the comparison or take the next step."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ def command(comparison: Comparison, *flags: str) -> str:
 
 
 def recording(comparison: Comparison) -> str:
-    """Return the command that records a repaired permanent drift."""
+    """Return the command that records the new design once a permanent drift is repaired."""
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
     return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record", *drift])
 
 
 def repeat(comparison: Comparison) -> str:
-    """Return the command that repeats the run, including searches."""
+    """Return the command that repeats the whole run, including searches."""
     searches = [search.method for search in comparison.searches if search.method != "structure"]
     methods = [method for method in searches if method != "ranking"]
     full = ["--tarl-localize", "full"] if len(methods) < len(searches) else []
@@ -47,13 +47,13 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
 
 
 def _folder(comparison: Comparison) -> str:
-    """Return the path from pytest's start folder to the root, or ""."""
+    """Return the path from pytest's start folder to the root, or an empty text."""
     target = comparison.target
     return target.removesuffix(comparison.test) if target.endswith(comparison.test) else ""
 
 
 def _repairable(comparison: Comparison) -> bool:
-    """Return whether a repair can be searched, and has not been."""
+    """Return whether a repair is possible and was not searched yet."""
     verdict = comparison.verdict
     lost = verdict.result == "degraded" and not verdict.failures_only
     return lost and comparison.repair is None and not _happened(comparison)

@@ -1,4 +1,4 @@
-"""Sentences on repairs: edits, reasons for rejecting candidates, and advice."""
+"""Describe repairs in sentences: edits, reasons for rejection, and advice."""
 
 from __future__ import annotations
 
@@ -44,22 +44,21 @@ ENDS: dict[Reason, str] = {
     "breaks other missions": "dropped, missions that lost nothing get worse",
 }
 
-# minimum restored share of the loss for suggesting a wider tolerance
+# a wider tolerance is suggested if at least this share of the loss was restored
 NEARLY = 0.8
-# suggested tolerance, as a multiple of the remaining loss; it is above 1, so that a test can show that the loss is
-# below it
+# suggested tolerance, as a multiple of the remaining loss; above 1, so that a test can show that the loss is smaller
 SPARE = 1.5
 
 
 def edit_words(edit: Edit) -> str:
-    """Describe an edit, with `→` for a number and `×` for a factor."""
+    """Describe an edit; `→` precedes a new number, `×` a factor."""
     return edit.what or f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
 
 
 def operand_words(operand: OperandEffect) -> str:
     """Describe the best change of an operand.
 
-    It is a new value, a factor if the old value is unknown, or the name of what the operand follows.
+    The best change is a new value, a factor (if the old value is unknown), or the name that the operand follows.
     """
     return operand.what or f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
@@ -74,7 +73,7 @@ def repair_words(repair: Repair) -> str:
 
 
 def partial_words(partial: Partial, comparison: Comparison) -> str:
-    """Describe a partial repair's gain and its designed effect."""
+    """Describe what a partial repair gains, and its effect in the designed world."""
     sure = f"with about {percent(partial.confidence)} confidence"
     least = "least" if partial.designed_low >= 0.0 else "most"
     return (
@@ -102,7 +101,7 @@ def best_words(repair: Repair) -> str:
 
 
 def attempt_words(attempt: Attempt) -> str:
-    """Describe an attempt, its reward and its outcome."""
+    """Describe a candidate, its reward and its outcome."""
     outcome = ENDS.get(attempt.reason, attempt.reason)
     if not attempt.episodes:
         return f"{attempt.what}: {outcome}"
@@ -113,7 +112,7 @@ def attempt_words(attempt: Attempt) -> str:
 
 
 def ways_out(comparison: Comparison) -> str:
-    """Return advice if a candidate failed only in the designed world, or ""."""
+    """Return advice if a candidate failed only in the designed world, or an empty text."""
     repair = comparison.repair
     if repair is None or repair.accepted or comparison.permanent:
         return ""
@@ -131,7 +130,7 @@ def ways_out(comparison: Comparison) -> str:
 
 
 def wider_tolerance(comparison: Comparison) -> str:
-    """Return advice for a candidate that restored nearly all of the loss, or ""."""
+    """Return advice if a candidate restored nearly all of the loss, or an empty text."""
     repair, tolerance = comparison.repair, comparison.verdict.tolerance
     designed, deployed = atr(comparison, "offline"), atr(comparison, "online")
     if repair is None or repair.accepted or designed is None or deployed is None:

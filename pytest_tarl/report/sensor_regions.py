@@ -1,4 +1,4 @@
-"""Describe sets of cells by boxes and in words."""
+"""Describe sets of cells as boxes and in words."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-# number of sensor orders tried when bins are merged; all orders of four sensors
+# maximum number of sensor orders to try when merging bins; four sensors have this many orders
 ORDERS = 24
-NAMED = 3  # maximum number of places named before "and 2 more"
+NAMED = 3  # maximum number of places to name before "and 2 more"
 
 
 def boxes(cells: Iterable[Cell], apart: Collection[int] = ()) -> tuple[Box, ...]:
-    """Cover `cells` with few boxes, without merging the sensors `apart`."""
+    """Cover `cells` with few boxes; never merge bins of the sensors `apart`."""
     single = [tuple((index, index) for index in cell) for cell in sorted(set(cells))]
     if not single:
         return ()
@@ -54,7 +54,7 @@ def runs(ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
-    """Join boxes that have only unvisited cells between them."""
+    """Join boxes with only unvisited cells between them."""
     kept, pending, barred = [], list(cover), list(others)
     while pending:
         box = pending.pop(0)
@@ -70,9 +70,9 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
 
 
 def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
-    """Join boxes that touch where an angle wraps around, such as at ±180°.
+    """Join boxes that meet where an angle wraps around, such as at ±180°.
 
-    The index of the last bin of such a joined box exceeds the number of bins.
+    The last bin of such a box has an index beyond the number of bins.
     """
     kept = list(cover)
     for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:
@@ -101,7 +101,7 @@ class Vocabulary:
         self.seen = tuple(sorted(set(bins)) for bins in by_sensor)
 
     def words(self, cells: Iterable[Cell], most: int = NAMED) -> str:
-        """Describe a set of cells by at most `most` boxes."""
+        """Describe a set of cells with at most `most` boxes."""
         chosen = frozenset(cells)
         cover = bridged(boxes(chosen), self.cells - chosen)
         for dimension, sensor in enumerate(self.sensors):
@@ -142,7 +142,7 @@ class Vocabulary:
         return f"{self.sensors[0].name} {' or '.join(named[:NAMED])}{unit and ' ' + unit}{more}"
 
     def _phrase(self, dimension: int, first: int, last: int) -> str:
-        """Describe a range of bins; "" for all values of a category."""
+        """Describe a range of bins; empty if it has all values of a category."""
         sensor, seen = self.sensors[dimension], self.seen[dimension]
         if not sensor.numeric and len(seen) > 1 and first <= seen[0] and last >= seen[-1]:
             return ""
@@ -162,7 +162,7 @@ class Vocabulary:
 
 
 def _interval(sensor: Sensor, first: int, last: int) -> str:
-    """Format a range of bins, rounded to a tenth of a bin."""
+    """Format a range of bins, rounded to a tenth of a bin's width."""
     low, high = sensor.interval(first, last)
     digits = max(0, -math.floor(math.log10(sensor.resolution)))
     unit = sensor.unit and " " + sensor.unit

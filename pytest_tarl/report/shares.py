@@ -1,4 +1,4 @@
-"""Describe how many of the shared episodes (--tarl-total) a comparison got, and why."""
+"""Describe how many of the shared episodes (--tarl-total) each comparison got, and why."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Share:
-    """A comparison's share of `total` episodes, and why it ended.
+    """How many of `total` episodes a comparison got, and why it ended.
 
-    A look is one test of the verdict. `looks` holds two numbers for each look: its number of episodes, and the smaller
-    of two uncorrected p-values (of a loss, and of more failures). `missing` is the number of further episodes that the
-    next look needs, or None after the last look. `left` is the number of episodes of `total` that were not run.
+    A look is one test of the verdict. For each look, `looks` has the number of episodes and the smaller of two
+    uncorrected p-values: for a loss and for more failures. `missing` is the number of further episodes needed for the
+    next look, or None after the last one. `left` is how many of the `total` episodes did not run.
     """
 
     total: int
@@ -24,7 +24,7 @@ class Share:
 
 
 def sentence(share: Share) -> str:
-    """Return the note about a comparison's share."""
+    """Return a note on the episodes that a comparison got."""
     got, even = share.looks[-1][0], share.total // share.comparisons
     seen = ", ".join(f"{p_value:.2g} after {episodes}" for episodes, p_value in share.looks)
     among = f"{share.comparisons} comparisons" if share.comparisons > 1 else "1 comparison"

@@ -1,4 +1,4 @@
-"""Lay out slices beside code lines, in per cent of the width."""
+"""Lay out slices beside code lines, with positions in percent of the width."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from dataclasses import dataclass
 
 from pytest_tarl.model import SitePlace, Slice
 
-MARGIN = 0.05  # share of the width that is left free at either end
+MARGIN = 0.05  # share of the width left free at each end
 TICKS = 4  # approximate number of ticks of an axis
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """A linear scale that includes zero, in per cent of the width."""
+    """A linear scale that includes zero, in percent of the width."""
 
     low: float
     high: float
 
     def at(self, value: float) -> float:
-        """Return the position of a value, 0 to 100."""
+        """Return the position of a value, from 0 to 100."""
         return round(100 * (value - self.low) / (self.high - self.low), 3)
 
     @property
     def ticks(self) -> tuple[float, ...]:
-        """Return round values, including zero, to label."""
+        """Return round values to label, including zero."""
         step = _round_step((self.high - self.low) / TICKS)
         first, last = math.ceil(self.low / step), math.floor(self.high / step)
         return tuple(step * i for i in range(first, last + 1))
@@ -33,7 +33,7 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A site: its slices, and whether its difference is the largest."""
+    """A site with its slices, and whether its difference is the largest."""
 
     site: SitePlace
     offline: float
@@ -49,7 +49,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """The slices of a taint list, with scales for values and differences."""
+    """The slices of a taint list, with one scale for values and one for differences."""
 
     rows: tuple[Row, ...]
     values: Scale
@@ -70,7 +70,7 @@ def chart(slices: Sequence[Slice]) -> Chart:
 
 
 def scale(values: Iterable[float]) -> Scale:
-    """Return a scale for all finite values and zero, with margins."""
+    """Return a scale with margins for zero and all finite values."""
     known = [0.0, *(value for value in values if math.isfinite(value))]
     low, high = min(known), max(known)
     if low == high:

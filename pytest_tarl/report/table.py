@@ -1,4 +1,4 @@
-"""A table of several drifts of one test, for the terminal."""
+"""Show several drifts of a test as a table on the terminal."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def row(comparison: Comparison) -> Row:
 
 
 def side_by_side(rows: Sequence[Row], width: int) -> list[str]:
-    """Return one table per test with several drifts, `width` columns wide."""
+    """Return one table, `width` columns wide, for each test with several drifts."""
     told: list[str] = []
     for test in dict.fromkeys(one[0] for one in rows):
         lines = [one[1:] for one in rows if one[0] == test]

@@ -1,4 +1,4 @@
-"""Report a comparison on the terminal in a few labelled lines."""
+"""Report a comparison on the terminal, in a few labelled lines."""
 
 from __future__ import annotations
 
@@ -18,18 +18,17 @@ from pytest_tarl.report import (
     words,
 )
 
-SHOWN = 3  # maximum number of culprits, lists and notes shown before "(and 3 more)"
-LABEL = 9  # width of the column of labels
-# minimum width (columns) of code printed on the same line as its location; if less is free, the code goes to the next
-# line
+SHOWN = 3  # maximum number of culprits, lists and notes to show before "(and 3 more)"
+LABEL = 9  # width of the label column
+# columns; code is printed on the same line as its location if this much is free, otherwise on the next line
 LEGIBLE = 24
-NARROWEST = 40  # minimum width of the report, in columns
+NARROWEST = 40  # minimum width of the report in columns
 
 
 def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
-    """Return the report of one comparison, `width` columns wide; `page` is the path of the report page, if written.
+    """Return the report of a comparison, `width` columns wide; `page` is the path of the report page, if any.
 
-    Paths and commands are not wrapped, so that they can be copied. They may therefore be wider than the report.
+    Paths and commands are never wrapped, so that they can be copied; they may be wider than the report.
     """
     width = max(width, NARROWEST)
     name = f"{comparison.test}[{comparison.drift or 'online'}]"
@@ -70,13 +69,13 @@ def _entries(
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
-    """Put text beside its label; `whole` text is not wrapped."""
+    """Put a label before text; `whole` text is not wrapped."""
     body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
 
 
 def _wrapped(text: str, width: int) -> list[str]:
-    """Wrap `text` between words, but not between a number and its percent sign."""
+    """Wrap `text` between words, but keep numbers and their percent signs together."""
     joined = text.replace(" %", "\0%")
     told = wrap(joined, width - LABEL - 2, break_on_hyphens=False, break_long_words=False)
     return [line.replace("\0", " ") for line in told] or [""]

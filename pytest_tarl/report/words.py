@@ -12,8 +12,8 @@ from pytest_tarl.report.guarantee_words import percent
 from pytest_tarl.report.sensor_regions import Vocabulary
 
 SIGNIFICANT = 0.05  # a loss is reported only if its p-value is at most this
-NEGLIGIBLE = 0.01  # minimum share of the total loss for reporting a part of the reward
-SHORTEST = 16  # minimum number of characters of a code line that are shown
+NEGLIGIBLE = 0.01  # parts of the reward below this share of the total loss are not reported
+SHORTEST = 16  # code lines are never cut to fewer characters than this
 
 
 def world_name(comparison: Comparison) -> str:
@@ -27,7 +27,7 @@ def designed_world(comparison: Comparison) -> str:
 
 
 def verdict_sentence(comparison: Comparison) -> str:
-    """Return the conclusion of the comparison in one sentence."""
+    """Return the conclusion in one sentence."""
     verdict, world = comparison.verdict, world_name(comparison)
     if verdict.failures_only:
         return f"In {world} {_successes(verdict)}."
@@ -47,13 +47,13 @@ def verdict_sentence(comparison: Comparison) -> str:
 
 
 def _successes(verdict: Verdict) -> str:
-    """Format the decrease of the share of successful missions."""
+    """Format the decrease of the success rate."""
     before, after = (percent(share) for share in verdict.success)
     return f"missions succeed in {after} of the episodes, instead of {before} ({p_value(verdict.p_failures)})"
 
 
 def loss_words(comparison: Comparison) -> str:
-    """Format the loss with interval and effect size, if there are enough episodes."""
+    """Format the loss and, if there are enough episodes, its interval and effect size."""
     offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
     if min(len(offline), len(online)) < 2:
         return ""
@@ -66,7 +66,7 @@ def loss_words(comparison: Comparison) -> str:
 
 
 def _sure(interval: LossInterval) -> str:
-    """Format an interval's confidence; approximate without a declared range."""
+    """Format an interval's confidence; approximate if no range is declared."""
     return f"{'' if interval.exact else 'about '}{percent(interval.confidence)} confidence"
 
 
@@ -105,7 +105,7 @@ def region_words(comparison: Comparison) -> str:
 
 
 def _words_without(comparison: Comparison) -> str:
-    """Describe the region without the sensors whose values are all new."""
+    """Describe the region without the sensors that have only new values."""
     without = comparison.region.without
     kept = [d for d in range(len(comparison.sensors)) if d not in without]
     short, chosen = (
@@ -123,21 +123,21 @@ def lost_words(comparison: Comparison, part: str) -> str:
 
 
 def lost_parts(comparison: Comparison) -> list[tuple[str, float]]:
-    """Return the decreased parts of the reward, largest loss first."""
+    """Return the parts of the reward that decreased, largest loss first."""
     changed = [(name, after - before) for name, (before, after) in comparison.parts.items()]
     least = NEGLIGIBLE * sum(by for _, by in changed if by < 0)
     return sorted(((name, by) for name, by in changed if by < least), key=lambda one: one[1])
 
 
 def paper_region_words(comparison: Comparison) -> str:
-    """Describe the paper's region; empty if there is none."""
+    """Describe the region as the paper defines it; empty if there is none."""
     if not comparison.paper_region:
         return ""
     return Vocabulary(comparison.sensors, comparison.cells).words(comparison.paper_region)
 
 
 def place(path: str, line: int, root: Path) -> str:
-    """Return `path:line`, with the path relative to `root` if it is below it."""
+    """Return `path:line`; the path is relative if it is below `root`."""
     inside = Path(path)
     if inside.is_absolute() and inside.is_relative_to(root):
         inside = inside.relative_to(root)
