@@ -1,4 +1,4 @@
-"""Base classes for real rospy and rclpy: the bus (the topics as the simulated world sees them) and the episode."""
+"""Base classes for an installed rospy or rclpy: the episode, and the bus (the topics as the world sees them)."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks
 
-# thread switch interval (s); the default, 0.005 s, delays a message at every switch
+# thread switch interval (s); the default of 0.005 s would delay a message at every switch
 _SWITCH_INTERVAL = 0.0002
 
 
 class RealBus(Bus):
-    """The bus of the simulated world. This bus uses its own ROS node."""
+    """The bus of the simulated world, which has its own ROS node."""
 
     kind: Kind
 
@@ -36,7 +36,7 @@ class RealBus(Bus):
         scheduler.collect = self.collect
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world; every idle subscriber receives the message before this method returns."""
+        """Publish from the world; return only after every idle subscriber has received the message."""
         place = self.topic(topic)
         message = self._own_class(message, place.name)
         stamp_if_unset(message, self._scheduler.time)
@@ -46,24 +46,24 @@ class RealBus(Bus):
         self._run(self._publish, place, message, latch)
 
     def interpose(self, topic: str, channel: Channel) -> None:  # noqa: ARG002
-        """Raise UnsupportedApiError: this process cannot intercept the messages of an installed ROS."""
+        """Raise UnsupportedApiError: messages of an installed ROS cannot be intercepted in this process."""
         raise UnsupportedApiError(
             f"The fault of {topic} needs the in-process ROS: remove --tarl-ros, or the fault from the marker."
         )
 
     def disconnect(self, process: Program) -> None:
-        """Do nothing, because a process that has ended receives no messages."""
+        """Do nothing: a process that has ended receives no messages."""
 
     def collect(self) -> bool:
         """Receive one message in transit; return whether there was one."""
         raise NotImplementedError
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish a message on the real ROS. Raise RecordingError if a subscriber has another type."""
+        """Publish on the installed ROS. Raise RecordingError if a subscriber has another message type."""
         raise NotImplementedError
 
     def heard(self, topic: str, message: Any) -> None:
-        """Record a message that a node has published."""
+        """Record a message published by a node."""
         place = self.topic(topic)
         self.published[place.name] += 1
         place.latest = message
@@ -103,7 +103,7 @@ class RealRos(Ros):
         self.lockstep.enter = self.enter
 
     def launch(self, given: Given) -> None:
-        """Set the parameters of a launch file; if the node's name is not known yet, set them for all nodes."""
+        """Set the parameters of a launch file: for all nodes if the node's name is not known yet."""
         super().launch(given)
         private = {} if given.node else {f"~{key}": one for key, one in given.private.items()}
         for name, value in {**given.shared, **private}.items():
@@ -121,7 +121,7 @@ class RealRos(Ros):
         raise NotImplementedError
 
     def installed(self) -> AbstractContextManager[None]:
-        """Within the context, nodes see the virtual clock, and their threads run as tasks."""
+        """Make nodes see the virtual clock inside the context, and run their threads as tasks."""
         return self._installed()
 
     @contextmanager
@@ -136,14 +136,14 @@ class RealRos(Ros):
 
 
 def _arguments(parameters: Mapping[str, Any], *, ros2: bool) -> Iterator[str]:
-    """Yield command line arguments that set private parameters, in the syntax of remappings in ROS 1 or 2."""
+    """Yield command line arguments that set private parameters, in the remapping syntax of ROS 1 or 2."""
     for name, value in parameters.items():
         text = json.dumps(value)  # the YAML parser of ROS also reads JSON
         yield from ("-p", f"{name}:={text}") if ros2 else (f"_{name}:={text}",)
 
 
 def refused(topic: str, published: Any, receiver: str, wanted: Any) -> RecordingError:
-    """Return the error for a subscription whose message type differs from the published type."""
+    """Return the error for a subscription whose message type differs from the published one."""
     return RecordingError(
         f"{topic} carries {type_name(published)}, but node {receiver!r} subscribes to it as {type_name(wanted)}."
     )

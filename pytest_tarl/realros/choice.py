@@ -1,4 +1,4 @@
-"""Select the ROS of an episode: the embedded one, or the installed one that the nodes import."""
+"""Select the ROS of an episode: the embedded one, or the installed one if the nodes import it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _INSTALL = {
 
 
 def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
-    """Return the ROS of an episode. Raise SettingsError if a real one is required but not installed."""
+    """Return the ROS of an episode. Raise SettingsError if an installed ROS is required but missing."""
     if kind == "embedded":
         return Ros()
     wanted = libraries(nodes)
@@ -36,7 +36,7 @@ def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
 
 
 def check_kind(kind: str) -> str:
-    """Return the value of --tarl-ros. Raise SettingsError if the value is unknown."""
+    """Return the value of --tarl-ros. Raise SettingsError if it is unknown."""
     if kind not in KINDS:
         raise SettingsError(
             f"--tarl-ros does not know {kind!r}; it takes {', '.join(KINDS[:-1])} or {KINDS[-1]}."
@@ -57,7 +57,7 @@ def _imported(file: Path) -> list[Library]:
     try:
         tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
-        return []  # Python reports the error when the file runs
+        return []  # Python will report the error when the file runs
     found: list[Library] = []
     for node in ast.walk(tree):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

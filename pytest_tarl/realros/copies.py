@@ -1,4 +1,4 @@
-"""Private copies of a package with module-level state, so that several ROS nodes can run in one process."""
+"""Import private copies of a package that has module-level state, to run several ROS nodes in one process."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Modules = dict[str, ModuleType]
 
 
 def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Modules:
-    """Import a new copy of a package and of some of its modules; existing copies remain usable.
+    """Import a new copy of a package and some of its modules; earlier copies remain usable.
 
-    `argv` is the command line that the package reads on import.
+    `argv` is the command line that the package reads when it is imported.
     """
     with _hidden(package), command_line(argv):
         for name in (package, *(f"{package}.{part}" for part in parts)):
@@ -25,13 +25,13 @@ def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Module
 
 
 def present(package: str) -> Modules:
-    """Return the modules of a package in `sys.modules`."""
+    """Return a package's modules in `sys.modules`."""
     inner = f"{package}."
     return {name: module for name, module in sys.modules.items() if name == package or name.startswith(inner)}
 
 
 def show(package: str, modules: Modules) -> None:
-    """Replace the modules of a package in `sys.modules` with `modules`."""
+    """Replace a package's modules in `sys.modules` with `modules`."""
     for name in present(package):
         del sys.modules[name]
     sys.modules.update(modules)

@@ -1,7 +1,7 @@
-"""Lock-step: count the messages that were sent, and resume nodes only after all of them have arrived.
+"""Lock-step: count sent messages, and resume nodes only after all of them have arrived.
 
-Messages pass through a real network and arrive in threads of the client library. This module restores the
-deterministic order of the scheduler.
+Messages pass through a real network and arrive in threads of the client library. This module restores the deterministic
+order of the scheduler.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-PATIENCE = 10.0  # maximum wall time until a message has arrived (s)
+PATIENCE = 10.0  # maximum wall time to wait for a message (s)
 
 
 class Way(NamedTuple):
-    """A connection from a sender to a receiver. Messages arrive in the order in which they were sent."""
+    """A connection from a sender to a receiver; messages arrive in the order in which they were sent."""
 
     topic: str
     sender: str
@@ -27,7 +27,7 @@ class Way(NamedTuple):
 
 
 class Wire:
-    """Messages in transit. Call `expect` and `take` in the test's thread, `arrived` in any."""
+    """The messages in transit. `expect` and `take` belong to the test's thread; any thread may call `arrived`."""
 
     def __init__(self) -> None:
         self._arrival = threading.Condition()
@@ -45,7 +45,7 @@ class Wire:
             self._arrival.notify()
 
     def take(self) -> tuple[Way, Any] | None:
-        """Wait for the message that was sent first and return it, or None if no message is in transit.
+        """Wait for the message that was sent first and return it; return None if there is none in transit.
 
         Raise RecordingError if the message does not arrive within PATIENCE.
         """
@@ -68,7 +68,7 @@ class Wire:
                 self._arrival.wait_for(lambda: len(self._boxes.get(way, ())) >= count, PATIENCE)
 
     def forget(self) -> None:
-        """Discard all messages in transit, at the end of an episode."""
+        """Discard all messages in transit at the end of an episode."""
         while self._expected:
             self.take()
         with self._arrival:
@@ -80,18 +80,18 @@ class WireScheduler(Scheduler):
 
     def __init__(self) -> None:
         super().__init__()
-        # called to receive a message in transit; returns whether there was one
+        # receives one message in transit, and returns whether there was one
         self.collect: Callable[[], bool] = bool
         self.enter: Callable[[Process], None] | None = None  # called before a task of a process is resumed
 
     def settle(self) -> None:
-        """Run all ready tasks, and the tasks that arriving messages make ready, until no message is in transit."""
+        """Run ready tasks, including those that messages make ready, until no message is in transit."""
         super().settle()
         while self.failure is None and self.collect():
             super().settle()
 
     def sent(self) -> None:
-        """Make the scheduler settle once more before time advances."""
+        """Make the scheduler settle again before time advances."""
         self.later(_nothing)
 
     def _resume(self, task: Task, woken: bool, error: BaseException | None = None) -> None:
@@ -101,4 +101,4 @@ class WireScheduler(Scheduler):
 
 
 def _nothing() -> None:
-    """Do nothing; queued only to make the scheduler settle again."""
+    """Do nothing; queueing this makes the scheduler settle again."""

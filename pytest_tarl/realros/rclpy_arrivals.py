@@ -1,4 +1,4 @@
-"""Find the subscriptions of real rclpy that have a message waiting."""
+"""Find the subscriptions of an installed rclpy that have a waiting message."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def silent(rclpy: Any, context: Any, subscriptions: Sequence[Any]) -> list[Any]:
-    """Return the subscriptions without a message waiting; messages stay in their queues."""
+    """Return the subscriptions without a waiting message; messages stay queued."""
     make = rclpy.impl.implementation_singleton.rclpy_implementation.WaitSet
     with ExitStack() as open_:
         for one in (*(subscription.handle for subscription in subscriptions), context.handle):

@@ -1,4 +1,4 @@
-"""The rclpy context of a node under test: `init` and `shutdown` keep the shared DDS participant."""
+"""The rclpy context of a node under test: `init` and `shutdown` leave the shared DDS participant alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _NODES = "_Context__node_weak_ref_list"
 
 
 class SharedParticipant:
-    """Mixin for rclpy's Context: the same interface, but all contexts share one DDS participant."""
+    """Mixin for rclpy's Context: the same interface, with one DDS participant for all contexts."""
 
     network: RclpyNetwork
     error: Any  # the class RCLError of rclpy
@@ -34,7 +34,7 @@ class SharedParticipant:
         self.network.contexts.append(self)
 
     def init(self, args: Any = None, **_: Any) -> None:
-        """Initialise the context. Raise RuntimeError if the context was initialised before."""
+        """Initialise the context. Raise RuntimeError if it already was."""
         if self.handle is not None:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -47,10 +47,10 @@ class SharedParticipant:
         return self._up and not (self.process is not None and self.process.ending)
 
     def destroy(self) -> None:
-        """Do nothing: other contexts share the participant."""
+        """Do nothing: other contexts use the participant."""
 
     def shutdown(self) -> None:
-        """Shut the context down. Raise RuntimeError before `init`, RCLError if it is already shut down."""
+        """Shut the context down. Raise RuntimeError before `init`, RCLError if it was already shut down."""
         if self.handle is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
         if not self.ok():
@@ -60,12 +60,12 @@ class SharedParticipant:
         self._cleanup()
 
     def try_shutdown(self) -> None:
-        """Shut the context down unless it already is."""
+        """Shut the context down unless it already was."""
         if self.ok():
             self._cleanup()
 
     def on_shutdown(self, callback: Any) -> None:
-        """Register a callback for the shutdown. Raise TypeError if the callback is not callable."""
+        """Register a shutdown callback. Raise TypeError if it is not callable."""
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         if self.handle is not None and not self.ok():
@@ -76,7 +76,7 @@ class SharedParticipant:
             )
 
     def stop(self) -> None:
-        """Shut down as Ctrl-C does; nodes continue to exist until their program destroys them."""
+        """Shut down as on Ctrl-C; nodes exist until their program destroys them."""
         if self._up:
             self._up = False
             self._call_on_shutdown_callbacks()
@@ -94,7 +94,7 @@ class SharedParticipant:
 
 
 def shared_context(network: RclpyNetwork) -> type[Any]:
-    """Return a class of contexts that share the participant of the run."""
+    """Return a context class whose instances share the participant of the run."""
     rclpy = network.rclpy
     error = rclpy.impl.implementation_singleton.rclpy_implementation.RCLError
     bases = (SharedParticipant, rclpy.context.Context)

@@ -1,4 +1,4 @@
-"""The ROS 2 network of a test run: one participant for all episodes, the world's node, messages in transit."""
+"""The ROS 2 network of a test run: one participant for all episodes, the world's node, and messages in transit."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Task
 
 WORLD = "tarl_world"
-_DOMAINS = range(1, 100)  # the ports of these domains are below the kernel's ephemeral range
-_PAUSE = 0.0001  # polling period while waiting for a sent message (s of wall time)
+_DOMAINS = range(1, 100)  # domains whose ports are below the kernel's ephemeral range
+_PAUSE = 0.0001  # polling period while waiting for a sent message (wall time in s)
 
 
 class RclpyNetwork:
-    """The network of a test run. All nodes share one process and one participant, so no discovery is needed."""
+    """The network of a test run. All nodes share a process and a participant, so no discovery is needed."""
 
     def __init__(self) -> None:
         self._environment = _own_domain()
@@ -37,16 +37,16 @@ class RclpyNetwork:
         self.scheduler = WireScheduler()
         self.parameters: Mapping[str, Any] = {}
         self.arguments: tuple[str, ...] = ()
-        self.listening: list[Task] = []  # tasks to wake whenever a message arrives
+        self.listening: list[Task] = []  # tasks to wake when a message arrives
         self.nodes: list[tuple[Process, Any]] = []
         self.clocks: list[Any] = []
         self.contexts: list[Any] = []
-        # subscription of a node → number of messages in transit to it
+        # a node's subscription → number of messages in transit to it
         self.expected: Counter[Any] = Counter()
         self.kept: Counter[Any] = Counter()  # number of messages that publishers keep for late subscribers
         self.for_world: deque[Any] = (
             deque()
-        )  # for each message on its way to the world, the subscription of the world
+        )  # for each message in transit to the world, the world's subscription
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}
@@ -82,7 +82,7 @@ class RclpyNetwork:
         self._state.clear()
 
     def enter(self, process: Process, before: Process | None) -> None:
-        """Set rclpy's default context and executor to those of a process."""
+        """Set rclpy's default context and executor to those of the process."""
         if before is not None:
             self._state[before] = self._globals()
         state = self._state.pop(process, {"context": None, "executor": None})
@@ -101,7 +101,7 @@ class RclpyNetwork:
         return stop
 
     def tell_time(self) -> None:
-        """Set the ROS clocks of all nodes to the virtual time."""
+        """Set the ROS clocks of all nodes to virtual time."""
         now = self.scheduler.time
         if now == self._told:
             return
@@ -116,7 +116,7 @@ class RclpyNetwork:
             self.scheduler.wake(task)
 
     def sent(self, publisher: Any) -> None:
-        """Count a sent message as in transit to every matched subscription."""
+        """Count a sent message as in transit to every matching subscription."""
         if publisher.qos_profile.durability.name == "TRANSIENT_LOCAL":
             self.kept[publisher] = min(self.kept[publisher] + 1, capacity(publisher.qos_profile))
         for subscription in self.matched(publisher):
@@ -130,10 +130,10 @@ class RclpyNetwork:
         self.wake_listening()
 
     def joined(self, subscription: Any) -> None:
-        """Count the messages that publishers have stored as in transit to a new subscription.
+        """Count the messages that publishers keep as in transit to a new subscription.
 
-        Wait until all of them are sent. Otherwise, the node might take a newer message first, and then still get old
-        messages that a short queue would have dropped.
+        Wait until all of them are sent. Otherwise the node might take a newer message first, and then receive old ones
+        that a short queue would have dropped.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return
@@ -149,10 +149,9 @@ class RclpyNetwork:
             self.expected[subscription] -= 1
 
     def under_way(self, executor: Any) -> bool:
-        """Return whether a message to a node of the executor is still in transit.
+        """Return whether a message to one of the executor's nodes is still in transit.
 
-        The executor must wait for this message; otherwise, the timing of threads would decide which of two topics comes
-        first.
+        The executor must wait for it; otherwise thread timing would decide which of two topics comes first.
         """
         expecting = [
             subscription
@@ -185,7 +184,7 @@ class RclpyNetwork:
         )
 
     def matched(self, publisher: Any) -> list[Any]:
-        """Return the subscriptions that match a publisher."""
+        """Return the subscriptions connected to a publisher."""
         topic = publisher.topic_name
         return [
             subscription
@@ -197,7 +196,7 @@ class RclpyNetwork:
         ]
 
     def compatible(self, offered: Any, requested: Any) -> bool:
-        """Return whether the middleware connects two QoS profiles."""
+        """Return whether the middleware would connect two QoS profiles."""
         answer, _ = self.rclpy.qos.qos_check_compatible(offered, requested)
         return bool(answer != self.rclpy.qos.QoSCompatibility.ERROR)
 
@@ -209,18 +208,18 @@ class RclpyNetwork:
 
 
 def capacity(profile: Any) -> int:
-    """Return the number of messages in a subscription's queue."""
+    """Return the queue length of a subscription."""
     keeps_all = profile.history.name == "KEEP_ALL"
     return 1_000_000 if keeps_all else max(1, int(profile.depth))
 
 
 def pause(_sleep: Any = sleep) -> None:
-    """Sleep _PAUSE of wall time, so that the middleware's threads can run."""
+    """Sleep for _PAUSE of wall time, to let the middleware's threads run."""
     _sleep(_PAUSE)
 
 
 def _own_domain() -> dict[str, str | None]:
-    """Restrict ROS to this machine and a random domain. Return the previous values of the environment variables."""
+    """Restrict ROS to this machine and a random domain. Return the environment variables as they were."""
     wanted = {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "ROS_DOMAIN_ID": str(random.SystemRandom().choice(_DOMAINS)),

@@ -1,7 +1,7 @@
-"""Patches of rclpy: its waits, clocks and context, and hooks for sent messages.
+"""Patch rclpy: its waits, clocks and context, with hooks for sent messages.
 
-Executors, callbacks, parameters, profiles, messages and the middleware stay unchanged. Every replacement checks the
-running task; outside nodes, it calls the original.
+Executors, callbacks, parameters, profiles, messages and the middleware stay unchanged. Outside node tasks, every
+replaced function calls the original.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def patch(network: RclpyNetwork) -> None:
-    """Patch rclpy to run in lock-step, until the process exits."""
+    """Patch rclpy to run in lock-step until the process exits."""
     _patch_context(network)
     _patch_nodes(network)
     _patch_clocks(network)
@@ -87,7 +87,7 @@ def ros_arguments(argv: tuple[str, ...]) -> list[str]:
 
 
 def _parameters(network: RclpyNetwork, name: str, options: dict[str, Any]) -> list[Any]:
-    """Return the test's parameters for a node: those for all nodes, and those for its name."""
+    """Return the test's parameters for a node: those for all nodes, then those for its name."""
     own = absolute(f"{options.get('namespace') or ''}/{name}") + "/"
     found = {}
     for key, value in network.parameters.items():
@@ -134,7 +134,7 @@ def _patch_timers(network: RclpyNetwork) -> None:
         if running_task() is not None:
             options.pop(
                 "clock", None
-            )  # all clock types show virtual time, because a steady clock would run on while the simulation pauses
+            )  # all clock types show virtual time: a steady clock would go on while the simulation pauses
         return create(self, *args, **options)
 
     node_class.create_timer = create_timer
@@ -203,7 +203,7 @@ def _raise_if_ended(executor: Any, task: Task, executors: Any) -> None:
 
 
 def _earliest(executor: Any, now: int, until: int | None) -> int | None:
-    """Return the time at which the next timer of the executor's nodes is due, or `until` if `until` is earlier."""
+    """Return when the next timer of the executor's nodes is due, or `until` if that is earlier."""
     due = [] if until is None else [until]
     for node in executor.get_nodes():
         for timer in node.timers:
@@ -214,7 +214,7 @@ def _earliest(executor: Any, now: int, until: int | None) -> int | None:
 
 
 class TaskPool:
-    """The pool of a multi-threaded executor, with tasks instead of threads."""
+    """The pool of a multi-threaded executor: it starts tasks instead of threads."""
 
     def __init__(self, network: RclpyNetwork) -> None:
         self._network = network
@@ -258,7 +258,7 @@ def _patch_topics(network: RclpyNetwork) -> None:
 
 
 def _of_node(topic: str) -> bool:
-    """Return whether the node's program created an entity; rclpy itself creates some for every node."""
+    """Return whether the node's program created an entity; rclpy itself creates some in every node."""
     return running_task() is not None and topic not in ("/rosout", "/parameter_events", "/clock")
 
 

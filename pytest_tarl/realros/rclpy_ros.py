@@ -1,4 +1,4 @@
-"""One episode on real rclpy."""
+"""Run an episode on an installed rclpy."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pytest_tarl.ros.bus import Topic
 from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.process import Process
 
-_DEPTH = 1_000  # queue depth of the world's publishers and subscriptions
+_DEPTH = 1_000  # queue length of the world's publishers and subscriptions
 
 
 class RclpyBus(RealBus):
-    """The bus of the world, which uses its own rclpy node."""
+    """The world's bus, which has its own rclpy node."""
 
     kind: Kind = "ros2"
 
@@ -29,7 +29,7 @@ class RclpyBus(RealBus):
         self._publishers: dict[tuple[str, bool], Any] = {}
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish by rclpy. Raise RecordingError if a subscriber has another message type."""
+        """Publish with rclpy. Raise RecordingError if a subscriber has another message type."""
         for _, node in self._network.nodes:
             for subscription in node.subscriptions:
                 if subscription.topic_name == place.name and subscription.msg_type is not type(message):
@@ -37,7 +37,7 @@ class RclpyBus(RealBus):
         self._publisher(place.name, type(message), latch).publish(message)
 
     def listen(self, topic: str, message_class: Any, profile: Any) -> None:
-        """Subscribe the world to a topic on which a node is about to publish."""
+        """Subscribe the world to a topic before a node publishes on it."""
         world, qos = self._network.world, self._network.rclpy.qos
         if all(one.topic_name != topic for one in world.subscriptions):
             own = qos.QoSProfile(
@@ -56,7 +56,7 @@ class RclpyBus(RealBus):
     def _publisher(self, topic: str, message_class: Any, latch: bool) -> Any:
         """Return the world's publisher.
 
-        The publisher is transient local with depth 1 if it latches or if a subscription requires that.
+        It is transient local with depth 1 if it latches, or if a subscription requires this.
         """
         qos = self._network.rclpy.qos
         wanted = [
@@ -84,7 +84,7 @@ class RclpyBus(RealBus):
 
 
 class RclpyRos(RealRos):
-    """An episode whose nodes import the real rclpy."""
+    """An episode whose nodes import the installed rclpy."""
 
     def __init__(self, *, parameters: Mapping[str, Any] | None = None, **options: Any) -> None:
         super().__init__(parameters=parameters, **options)
@@ -115,7 +115,7 @@ class RclpyRos(RealRos):
         self.network.tell_time()
 
     def close(self) -> None:
-        """End every node, then discard the episode."""
+        """End every node, then clean up the episode."""
         if self.closed:
             return
         try:
@@ -126,9 +126,9 @@ class RclpyRos(RealRos):
 
 @cache
 def rclpy_network() -> RclpyNetwork:
-    """Return the network of this test run; start it at first use."""
+    """Return the network of this test run; start it when first needed."""
     with warnings.catch_warnings():
-        # these warnings come from rclpy's imports, so the user cannot fix them
+        # these warnings come from imports in rclpy, where users cannot fix them
         warnings.simplefilter("ignore", DeprecationWarning)
         network = RclpyNetwork()
         patch(network)
@@ -143,4 +143,4 @@ def close_network() -> None:
 
 
 def _nothing(_message: Any) -> None:
-    """Do nothing: `collect` takes the world's messages one at a time."""
+    """Do nothing: `collect` takes the world's messages one by one."""

@@ -1,4 +1,4 @@
-"""One real rospy node: a private copy of rospy, initialised once, whose connections outlive episodes."""
+"""One node on an installed rospy: a private copy of rospy, initialised once, with connections that outlive episodes."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "n
 
 
 class RospyCopy:
-    """A private copy of rospy. `process` uses the copy in this episode; None for the copy of the world."""
+    """A private copy of rospy, used by `process` in this episode; None for the world's copy."""
 
     def __init__(self, argv: Sequence[str]) -> None:
         self.argv = tuple(argv)
         self.modules: Modules = load_copy("rospy", _PARTS, argv)
         self.process: Process | None = None
-        self.name = ""  # `init_node` sets it
+        self.name = ""  # set by `init_node`
         self.real: dict[str, Callable[..., Any]] = {}  # originals of patched functions
         self.services: list[Any] = []  # services of the current episode
 
@@ -53,12 +53,12 @@ class RospyCopy:
         show("rospy", self.modules)
 
     def register(self, name: str, arguments: dict[str, Any]) -> None:
-        """Run the original `init_node`; a copy does this only once."""
+        """Run the original `init_node`, once per copy."""
         self.real["init_node"](name, **{**arguments, "disable_signals": True})
         self.name = self.names.get_caller_id()
 
     def begin(self, process: Process) -> None:
-        """Reset to the state of a new process, but keep connections."""
+        """Reset to the state of a new process, but keep the connections."""
         self.process = process
         self.core.__dict__.update(_client_shutdown_hooks=[])
         self.rostime.__dict__.update(_rostime_initialized=False, _rostime_current=None)

@@ -1,4 +1,4 @@
-"""The ROS 1 network of a test run: a master, the world's node and the nodes under test, kept between episodes."""
+"""The ROS 1 network of a test run: master, world's node and nodes under test, kept between episodes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class RospyNetwork:
         self.wire = Wire()
         self.scheduler = WireScheduler()
         self.calls = ServiceCalls(self.scheduler)
-        self.listening: list[Task] = []  # tasks to wake at every arrival
+        self.listening: list[Task] = []  # tasks to wake when a message arrives
         self.in_hooks = False
         self.parameters: Mapping[str, Any] = {}
         self.node_publishes: Callable[[str, Any], None] | None = None
@@ -67,19 +67,19 @@ class RospyNetwork:
                 self.world.rospy.set_param(absolute(name), value)
 
     def end(self) -> None:
-        """End an episode."""
+        """End the episode."""
         for copy in self._copies.values():
             copy.end()
         self._copies.clear()
         self.wire.forget()
 
     def enter(self, process: Process) -> None:
-        """Assign a copy of rospy to a starting process; if possible, the copy that it had in the last episode."""
+        """Give a starting process a copy of rospy; if possible, the one that it had in the last episode."""
         if process in self._copies:
             return
         key, number = process.argv, 0
         while (copy := self._kept.get((*key, str(number)))) is not None and copy.process is not None:
-            number += 1  # in this episode, this copy belongs to another process of the same program
+            number += 1  # another process of the same program already has this copy in this episode
         if copy is None:
             copy = self._kept[(*key, str(number))] = self._made(key)
         copy.begin(process)
@@ -91,7 +91,7 @@ class RospyNetwork:
         return self._copies[process]
 
     def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-        """Do the work of `init_node`; if the node exists from an earlier episode, reset it to the state of a new node.
+        """Do the work of `init_node`; reset the node if it exists from an earlier episode.
 
         Raise NodeError if the node's name has changed since the earlier episode.
         """
@@ -116,7 +116,7 @@ class RospyNetwork:
         WATCHDOG.beat()
 
     def joined(self, copy: RospyCopy, impl: Any, *, publishes: bool) -> None:
-        """Wait until a new publisher or subscriber has all its connections."""
+        """Wait until a new publisher or subscriber is fully connected."""
         if copy is not self.world and impl.resolved_name != "/rosout":
             if publishes and self.node_publishes is not None:
                 self.node_publishes(impl.resolved_name, impl.data_class)
@@ -144,7 +144,7 @@ class RospyNetwork:
         WATCHDOG.beat()
 
     def subscribers(self, topic: str) -> list[tuple[RospyCopy, Any]]:
-        """Return the subscribers of a topic, each with its connection."""
+        """Return a topic's subscribers, each with its connection."""
         return [end for end in self._ends(topic, "subs") if end[0] is not self.world]
 
     def sent(self, way: Way) -> None:
@@ -154,7 +154,7 @@ class RospyNetwork:
             self.scheduler.sent()
 
     def latched(self, copy: RospyCopy, subscriber: Any, callback: Any, arguments: Any) -> None:
-        """Deliver latched messages of a topic to a new callback."""
+        """Deliver a topic's latched messages to a new callback."""
         if copy.process is None:
             return
         for _, publisher in self._ends(subscriber.resolved_name, "pubs"):
@@ -233,7 +233,7 @@ def mismatch(publisher: Any, subscriber: Any) -> bool:
 
 
 def sleep_really(duration: float, _sleep: Callable[[float], None] = sleep) -> None:
-    """Sleep for a short wall time, so that other threads can run."""
+    """Sleep for a short wall time, to let other threads run."""
     _sleep(duration)
 
 

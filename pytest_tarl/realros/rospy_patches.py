@@ -1,6 +1,6 @@
-"""Patches of a node's copy of rospy: waits, sent and received messages, initialisation and shutdown.
+"""Patch a node's copy of rospy: waits, sent and received messages, initialisation and shutdown.
 
-All other parts of rospy stay unchanged. A replaced function calls the original one outside of node tasks.
+The rest of rospy stays unchanged. Outside node tasks, replaced functions call the original.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pytest_tarl.realros.rospy_copy import RospyCopy
     from pytest_tarl.realros.rospy_network import RospyNetwork
 
-# the real functions, saved here because nodes get the virtual clock under these names
+# the real functions, saved because nodes get the virtual clock under these names
 REAL_TIME = SimpleNamespace(
     time=time.time, sleep=time.sleep, monotonic=time.monotonic, perf_counter=time.perf_counter,
     strftime=time.strftime, localtime=time.localtime, gmtime=time.gmtime)  # fmt: skip
@@ -74,7 +74,7 @@ def _patch_waits(copy: RospyCopy, network: RospyNetwork) -> None:
             if process is None:
                 original(duration)
                 return
-            copy.rostime.get_rostime()  # raises an exception before init_node
+            copy.rostime.get_rostime()  # raises before init_node
             span = duration.to_nsec() if hasattr(duration, "to_nsec") else nanoseconds(duration)
             _sleep(copy, network, process, process.scheduler.time + span)
 
@@ -104,7 +104,7 @@ def _sleep(copy: RospyCopy, network: RospyNetwork, process: Process, until: int)
     if process.ending:
         process.refuse_to_wait()
         if network.in_hooks:
-            return  # in shutdown hooks, virtual time stands still
+            return  # virtual time stands still in shutdown hooks
     elif until >= process.scheduler.time:
         process.scheduler.wait(until)
     if process.ending:
@@ -178,7 +178,7 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def publish(self: Any, message: Any, connection_override: Any = None) -> Any:
         if connection_override is not None and message is self.latch:
-            # rospy would send the latched message to a new subscriber once more; `latched` has already sent it
+            # rospy would send the latched message to a new subscriber again, after `latched` did
             return None
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
@@ -186,7 +186,7 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
             network.wire.wait_for_all(way)
         try:
             result = original(self, message, connection_override)
-        except BaseException:  # rospy would leave a partial message in its buffer and break the connection
+        except BaseException:  # rospy would leave half a message in its buffer and break the connection
             self.buff.seek(0)
             self.buff.truncate(0)
             raise
@@ -209,7 +209,7 @@ def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
         connections, self.connections = (
             self.connections,
             [],
-        )  # latched messages are delivered in order, not immediately
+        )  # latched messages are delivered in order, not at once
         try:
             add_callback(self, callback, arguments)
         finally:
@@ -218,7 +218,7 @@ def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def init(self: Any, name: str, data_class: Any) -> None:
         make(self, name, data_class)
-        self.tcp_nodelay = True  # without this option, TCP delays the second of two small messages
+        self.tcp_nodelay = True  # otherwise TCP delays the second of two small messages
 
     subscriber.receive_callback, subscriber.add_callback, subscriber.__init__ = receive_callback, add, init
 
@@ -231,7 +231,7 @@ def _patch_connecting(copy: RospyCopy, network: RospyNetwork) -> None:
         known = self.pubs if kind == copy.modules["rospy.impl.registration"].Registration.PUB else self.subs
         new = name not in known
         impl = acquire(self, kind, name, data_class)
-        impl.ref_count += new  # one more reference, so that the connections outlive the episode
+        impl.ref_count += new  # one reference more, so that the connections outlive the episode
         network.joined(copy, impl, publishes=known is self.pubs)
         return impl
 

@@ -1,4 +1,4 @@
-"""One episode on real rospy."""
+"""Run an episode on an installed rospy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pytest_tarl.ros.process import Process
 
 
 class RospyBus(RealBus):
-    """The bus of the world, which uses its own rospy node."""
+    """The world's bus, which has its own rospy node."""
 
     kind: Kind = "ros1"
 
@@ -34,7 +34,7 @@ class RospyBus(RealBus):
         network.node_subscribes = self.subscribed.add
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish by rospy. Raise RecordingError if the message is invalid or a subscriber has another type."""
+        """Publish with rospy. Raise RecordingError if the message is invalid or a subscriber has another type."""
         publisher = self._publisher(place.name, type(message))
         for copy, subscriber in self._network.subscribers(place.name):
             if copy.process is not None and subscriber.callbacks and mismatch(publisher.impl, subscriber):
@@ -71,7 +71,7 @@ class RospyBus(RealBus):
         return self._publishers[topic]
 
     def _listen(self, topic: str, message_class: Any) -> None:
-        """Subscribe the world to a topic on which a node is about to publish."""
+        """Subscribe the world to a topic before a node publishes on it."""
         self._network.world.rospy.Subscriber(topic, message_class)
 
     def _lane(self, process: Process, topic: str, subscriber: Any) -> Lane:
@@ -82,7 +82,7 @@ class RospyBus(RealBus):
 
 
 class Lane:
-    """The callbacks of a node for one topic. The callbacks handle one message at a time, as in rospy's thread."""
+    """A node's callbacks for one topic; they handle one message at a time, as in rospy's thread."""
 
     def __init__(self, process: Process, subscriber: Any) -> None:
         self._process = process
@@ -91,7 +91,7 @@ class Lane:
         self._busy = False
 
     def deliver(self, message: Any) -> None:
-        """Run the callbacks with a message; queue it while they handle an earlier message."""
+        """Call the callbacks with a message, or queue it while they handle an earlier one."""
         if self._process.ending:
             return
         self._waiting.append(message)
@@ -116,7 +116,7 @@ class Lane:
 
 
 class RospyRos(RealRos):
-    """An episode whose nodes import the real rospy."""
+    """An episode whose nodes import the installed rospy."""
 
     def __init__(self, *, parameters: Mapping[str, Any] | None = None, **options: Any) -> None:
         super().__init__(parameters=parameters, **options)
@@ -135,14 +135,14 @@ class RospyRos(RealRos):
         super().start(run, name=name, argv=[*argv, *remapped])
 
     def enter(self, process: Process) -> None:
-        """Make `import rospy` return the copy of this process."""
+        """Make `import rospy` return this process's copy."""
         if process is not self._shown:
             self.network.enter(process)
             self.network.copy_of(process).show()
             self._shown = process
 
     def close(self) -> None:
-        """End every node, then discard the episode."""
+        """End every node, then clean up the episode."""
         if self.closed:
             return
         try:
@@ -162,7 +162,7 @@ class RospyRos(RealRos):
 
 @cache
 def rospy_network() -> RospyNetwork:
-    """Return the network of this test run; start it at first use."""
+    """Return the network of this test run; start it when first needed."""
     return RospyNetwork(patch)
 
 
@@ -174,6 +174,6 @@ def close_network() -> None:
 
 
 def _silence_rospy() -> None:
-    """Ignore warnings in rospy's code, because under `-W error` they would end rospy's threads."""
+    """Ignore warnings from rospy's code: with `-W error`, they would end rospy's threads."""
     for module in ("rospy", "rosgraph", "roslib", "genpy"):
         warnings.filterwarnings("ignore", category=DeprecationWarning, module=rf"{module}(\.|$)")

@@ -1,7 +1,7 @@
-"""Service calls of rospy in lock-step. A call is either in transit or in its handler, which runs in virtual time.
+"""Run rospy's service calls in lock-step: a call is either in transit, or in its handler in virtual time.
 
-Virtual time stands still while a call is in transit. The order of arrivals does not depend on the network: answers come
-first, in the order of their calls. Then come requests, sorted by service and content.
+Virtual time stands still while a call is in transit. Arrivals are handled in an order that does not depend on the
+network: first answers, in the order of their calls; then requests, sorted by service and content.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from pytest_tarl.realros.lockstep import PATIENCE
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-Outcome = Callable[[], Any]  # function that returns the result of a call or raises its exception
+Outcome = Callable[[], Any]  # returns the result of a call, or raises its exception
 Order = tuple[int, int, str]
 
 
 class Arrival(NamedTuple):
-    """A received request or answer, with its position among simultaneous ones."""
+    """A request or answer that arrived, with its place among simultaneous ones."""
 
     order: Order
     goes_on: Callable[[], None]
@@ -30,7 +30,7 @@ class Arrival(NamedTuple):
 class ServiceCalls:
     """The calls of one episode.
 
-    Threads other than the test's own access only `_arrived`, while they hold the lock `_arrival`.
+    Threads other than the test's access only `_arrived`, and only while they hold the lock `_arrival`.
     """
 
     def __init__(self, scheduler: Scheduler) -> None:
@@ -41,7 +41,7 @@ class ServiceCalls:
         self._on_wire = 0
 
     def served(self, process: Process, service: str, handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return a handler for any thread; it runs the original handler in a task of its node."""
+        """Return a handler that any thread may call; it runs the original handler in a task of its node."""
 
         def handle(request: Any) -> Any:
             answer: list[Outcome] = []
@@ -85,7 +85,7 @@ class ServiceCalls:
         self._scheduler.wake(task)
 
     def _sent(self) -> None:
-        """Count a request or answer as in transit, and schedule the wait for it."""
+        """Count a request or answer as in transit, and schedule waiting for it."""
         self._on_wire += 1
         self._scheduler.later(self._attend)
 
