@@ -1,1 +1,1 @@
-"""Recorded missions: read bags of ROS 1 and ROS 2 with `rosbags`, and replay them to nodes on the virtual clock."""
+"""Recorded missions: read bags of ROS 1 and ROS 2 with `rosbags`, and replay them to nodes in virtual time."""

@@ -8,9 +8,9 @@ from typing import NamedTuple
 class Channel(NamedTuple):
     """A recorded topic.
 
-    `type` has the form of ROS 2, such as `std_msgs/msg/Bool`, even for bags of ROS 1. `definition` is the
-    text of the type, or empty if the bag has none. `latched` is true if the publisher kept its last message
-    for late subscribers.
+    `type` is written as in ROS 2, for example `std_msgs/msg/Bool`, even for ROS 1. `definition` is the text of the
+    type; it is empty if the bag does not have it. `latched` is true if the publisher kept its last message for late
+    subscribers.
     """
 
     topic: str
@@ -21,7 +21,7 @@ class Channel(NamedTuple):
 
 
 class Recorded(NamedTuple):
-    """A serialised message and the time at which it was recorded (ns)."""
+    """A serialised message, and the time at which it was recorded (ns)."""
 
     time: int
     topic: str

@@ -1,4 +1,4 @@
-"""Convert messages from `rosbags` to the class that a node subscribes to."""
+"""Convert messages from `rosbags` to the class that the node subscribes to."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ OF_ONE_GENERATION = {"seq"}  # fields of a header that only ROS 1 has
 
 
 def class_named(name: str, kind: Kind) -> type[Any] | None:
-    """Return the class of a type written as in ROS 2, or None if the type is unknown."""
+    """Return the class of a type written as in ROS 2; None if the type is unknown."""
     package, _, short = name.replace("/msg/", "/").partition("/")
     return find_class(kind, package, short)
 
@@ -32,7 +32,7 @@ def converted(recorded: Any, wanted: type[Any]) -> Any:
 
 
 def _value(value: Any, template: Any, kind: Kind) -> Any:
-    """Return a field's value in the same form as `template`, which is the field's value in a new message."""
+    """Return a field's value in the form of `template`, the field's value in a new message."""
     if hasattr(template, "nsecs"):
         return type(template)(value.sec, value.nanosec)
     if is_message(template):

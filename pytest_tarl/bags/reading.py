@@ -26,9 +26,9 @@ ENDINGS = (".bag", ".bag.active", ".mcap", ".db3")
 
 @dataclass
 class Bag:
-    """A recorded mission: its channels by topic, and access to its messages.
+    """A recorded mission: its channels by topic, and its messages.
 
-    `notes` are sentences for the user; reading the messages can add further notes.
+    `notes` are sentences for the user; reading messages can add more.
     """
 
     path: Path
@@ -62,7 +62,7 @@ class Bag:
 
     @cached_property
     def _stores(self) -> tuple[Any, Any]:
-        """Return the type definitions in the bag, and the standard definitions of its ROS generation."""
+        """Return the bag's own type definitions, and the standard ones of its ROS generation."""
         from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
         own, usual = (
@@ -108,7 +108,7 @@ def _require() -> None:
 
 
 def _unreadable() -> tuple[type[Exception], ...]:
-    """Return the exceptions that reading a damaged bag can raise."""
+    """Return the exceptions that a damaged bag can raise."""
     from rosbags.rosbag1 import ReaderError as Error1
     from rosbags.rosbag2 import ReaderError as Error2
 
@@ -117,7 +117,7 @@ def _unreadable() -> tuple[type[Exception], ...]:
 
 
 def _of_databases() -> Iterator[type[Exception]]:
-    """Yield the exceptions of the database libraries that any version of rosbags uses to read .db3 files."""
+    """Yield the exceptions of all database libraries with which versions of rosbags read .db3 files."""
     for name in ("apsw", "sqlite3"):
         with suppress(ImportError):
             yield import_module(name).Error
@@ -175,7 +175,7 @@ def _channel(connection: Any) -> Channel:
 
 
 def _salvaged(path: Path, kind: Kind, reason: str) -> Bag:
-    """Open the readable part of a truncated bag. Raise LogError if there is none."""
+    """Open the readable part of a truncated bag. Raise LogError if nothing is readable."""
     files = (
         [path] if not path.is_dir() else sorted(one for one in path.iterdir() if one.name.endswith(ENDINGS))
     )

@@ -1,4 +1,4 @@
-"""Replay a recorded mission in place of the simulated world; a monitor gives the rewards."""
+"""Replay a recorded mission instead of the simulated world; a monitor gives the rewards."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ ALWAYS_THERE = {
     "/parameter_events",
     "/tf",
     "/tf_static",
-}  # topics that a bag may lack without a note
+}  # a bag that lacks these topics needs no note
 
 
 class MissionReplayed(Skipped):
-    """Raised after the replay to leave the test body, since the rest of the body would run the test's own world."""
+    """Leave the test body after the replay: the rest of it would run the test's own world."""
 
 
 class Moment:
-    """What a monitor reads at the end of a step: the newest recorded message of each topic."""
+    """What a monitor reads at the end of a step: each topic's newest recorded message."""
 
     def __init__(self, bag: Bag) -> None:
-        self.now = 0.0  # bag time (s) since the start of the bag
+        self.now = 0.0  # seconds since the start of the bag
         self.over = False  # whether this is the last step
-        # called with values of signals that do not come from a topic
+        # receives the values of signals that do not come from a topic
         self.observe: Callable[..., None] = _unheard
         self._bag = bag
         self._data: dict[str, bytes] = {}
@@ -56,23 +56,23 @@ class Moment:
         self._spelled = {absolute(topic): topic for topic in bag.channels}
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message on the topic, as recorded, or None before the first one."""
+        """Return the newest message on the topic, as recorded; None before the first one."""
         name = self._spelled.get(absolute(topic), topic)
         if name not in self._read and name in self._data:
             self._read[name] = self._bag.decode(name, self._data[name])
         return self._read.get(name)
 
     def take(self, message: Recorded) -> None:
-        """Store a message; it is deserialised when `latest` asks for it."""
+        """Store a message; `latest` deserialises it when needed."""
         self._data[message.topic] = message.data
         self._read.pop(message.topic, None)
 
 
 class Replay:
-    """The replay of one bag to the nodes of an episode.
+    """The replay of a bag to an episode's nodes.
 
-    Topics of sensors and topics to which a node subscribes are replayed, except those on which a node of the episode
-    publishes. `notes` are sentences for the user.
+    The topics of sensors and the topics that nodes subscribe to are replayed, unless a node of the episode publishes on
+    them. `notes` are sentences for the user.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class Replay:
         self._refused: set[str] = set()
 
     def begin(self, ros: Ros) -> None:
-        """Set the clock to the start of the mission, and discard messages of the test's own world."""
+        """Set the clock to the mission's start, and discard messages of the test's own world."""
         ros.scheduler.time = self.bag.start
         ros.bus.muted = True
 
@@ -107,8 +107,8 @@ class Replay:
     ) -> None:
         """Replay the mission in steps of `dt` seconds; close each step once `ready` returns true.
 
-        `close` receives the reward from the monitor, or None if the rewards come from formulas. `observe` lets the
-        monitor set signals. Raise SettingsError if `dt` is not positive.
+        `close` gets the reward from the monitor, or None if formulas give the rewards. `observe` lets the monitor set
+        signals. Raise SettingsError if `dt` is not positive.
         """
         step = nanoseconds(dt)
         if step <= 0:
@@ -151,7 +151,7 @@ class Replay:
         ros.bus.publish(place.name, told, latch=channel.latched)
 
     def _class(self, ros: Ros, topic: str) -> type[Any]:
-        """Return the message class with which the nodes subscribe.
+        """Return the message class that the nodes subscribe with.
 
         Raise FieldError if the recorded topic has another type.
         """
@@ -184,20 +184,20 @@ def _sentence(problem: Exception) -> str:
 
 
 def _unheard(**values: Any) -> None:
-    """Ignore values of signals outside an episode."""
+    """Ignore signals outside an episode."""
 
 
 def _chosen(
     monitor: Monitor | None, judge: Judge | None, sensors: Sequence[Sensor], requirements: Requirements
 ) -> Monitor | None:
-    """Return the monitor of a mission; if the rewards come from formulas, the monitor only observes."""
+    """Return the monitor of a mission; if formulas give the rewards, it only observes."""
     if requirements.rewarding:
         return _watching(_made(monitor)) if monitor is not None else None
     return _made(monitor) if monitor is not None else _judging(judge, sensors)
 
 
 def _watching(monitor: Monitor) -> Any:
-    """Return a monitor that calls another monitor and discards its reward."""
+    """Return a monitor that calls another one and discards its reward."""
 
     def watch(moment: Moment) -> None:
         monitor(moment)
@@ -206,7 +206,7 @@ def _watching(monitor: Monitor) -> Any:
 
 
 def _made(monitor: Any) -> Monitor:
-    """Return the monitor of one mission; if the marker names a class, this is a new instance."""
+    """Return the monitor of one mission: a new instance if the marker names a class."""
     made: Monitor = monitor() if isinstance(monitor, type) else monitor
     return made
 

@@ -26,11 +26,11 @@ _SCHEMA, _CHANNEL, _MCAP_MESSAGE, _MCAP_CHUNK = 3, 4, 5, 6  # record types of MC
 
 
 class CutOffError(Exception):
-    """Raised if a file ends inside a record."""
+    """A file ends in the middle of a record."""
 
 
 def walk(path: Path) -> Walk:
-    """Yield the channels and messages of a file up to the damage, each channel before its messages."""
+    """Yield a file's channels and messages up to the damage, each channel before its messages."""
     walks: dict[str, Callable[[Path], Walk]] = {".bag": _walk_bag, ".mcap": _walk_mcap, ".db3": _walk_db3}
     found = walks.get(".bag" if path.name.endswith(".bag.active") else path.suffix)
     if found is not None:
@@ -111,7 +111,7 @@ def _mcap_records(
         operation = _take(file, 1)[0]
         (size,) = struct.unpack("<Q", _take(file, 8))
         data = file.read(size)
-        # the truncated part of a chunk is readable, too
+        # the beginning of a truncated chunk can still be read
         if len(data) < size and operation != _MCAP_CHUNK:
             raise CutOffError
         record = BytesIO(data)
@@ -144,17 +144,17 @@ def _transient(profiles: str) -> bool:
 
 
 def _inflated(data: bytes, compression: str) -> bytes:
-    """Decompress the available part of a chunk; its end may be missing."""
+    """Decompress as much of a chunk as there is; its end may be missing."""
     if compression in ("", "none"):
         return data
     return bytes(_decompressor(compression).decompress(data))
 
 
-_ZSTANDARD = ("zstandard", "ZstdDecompressor")  # library that rosbags 0.11.0 uses
+_ZSTANDARD = ("zstandard", "ZstdDecompressor")  # the library that rosbags 0.11.0 uses
 
 
 def _decompressor(compression: str) -> Any:
-    """Return a streaming decompressor from the library on which the installed `rosbags` depends.
+    """Return a streaming decompressor from the library that the installed `rosbags` depends on.
 
     Raise ValueError for an unsupported compression.
     """
@@ -178,9 +178,9 @@ def _decompressor(compression: str) -> Any:
 def _walk_db3(path: Path) -> Walk:
     """Yield the contents of an SQLite bag in the order in which messages were written."""
     with closing(sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)) as database:
-        database.execute("PRAGMA writable_schema=ON")  # without this, SQLite refuses to read a truncated file
+        database.execute("PRAGMA writable_schema=ON")  # otherwise SQLite refuses to read a truncated file
         texts: dict[str, tuple[str, str]] = {}
-        with suppress(sqlite3.Error):  # recordings made before 2023 lack this table
+        with suppress(sqlite3.Error):  # recordings from before 2023 do not have this table
             query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
             texts = {name: (encoding, text) for name, encoding, text in database.execute(query)}
         topics = {}

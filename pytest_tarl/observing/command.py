@@ -21,7 +21,7 @@ from pytest_tarl.ros.argv import command_line
 from pytest_tarl.sensors import binning_digest
 from tarl_lint.api import analyse
 
-# name of the exception that rclpy raises after a signal; rospy raises KeyboardInterrupt
+# rclpy raises this exception after a signal; rospy raises KeyboardInterrupt
 SHUT_DOWN = "ExternalShutdownException"
 
 
@@ -39,15 +39,15 @@ class Order:
     mission: str = ""
     idle: float | None = None
     step: float | None = None
-    log_size: int = 0  # size at which the log is rotated (bytes); 0 if never
+    log_size: int = 0  # size in bytes at which the log is rotated; 0 for never
     log_keep: int = 0  # number of rotated logs to keep; 0 for all
 
 
 def observe(order: Order) -> str:
-    """Run the node until it ends, and return the line to print.
+    """Run the node until it ends; return the line to print.
 
     Raise LogError or AnalysisError if the node cannot be observed, FixtureError if the recording cannot be read, and
-    any exception of the node.
+    whatever the node raises.
     """
     _check(order)
     fixture = load(order.fixture or _fixture_of(order.node))
@@ -133,7 +133,7 @@ def _check(order: Order) -> None:
 
 def _sites(order: Order) -> Plan:
     paths = [path.resolve() for path in (order.node, *order.modules)]
-    # the project's settings give the log the same statements as the recording
+    # with the project's settings, the log has the same statements as the recording
     analysis = analyse(paths, root=Path.cwd(), with_settings=True)
     if not analysis.flows:
         raise AnalysisError(f"No flow from a subscription to a publish call was found in {order.node}.")
@@ -141,9 +141,9 @@ def _sites(order: Order) -> Plan:
 
 
 def _fixture_of(node: Path) -> Path:
-    """Find the recording below the working directory whose taint lists contain the node's file.
+    """Find the recording below the working directory whose taint lists include the node's file.
 
-    Raise LogError if there is no such recording, or more than one.
+    Raise LogError unless there is exactly one.
     """
     found = [path for path in sorted(Path.cwd().glob("**/.tarl/utility/*.npz")) if _names(load(path), node)]
     if len(found) != 1:
@@ -180,7 +180,7 @@ def _warn_of_mute_sensors(fixture: Fixture) -> None:
 
 @contextmanager
 def _steps(order: Order, observer: Observer) -> Iterator[None]:
-    """Close steps at a fixed interval if no reward topic closes them."""
+    """Close steps at a fixed interval, unless a reward topic closes them."""
     over = threading.Event()
 
     def tick() -> None:

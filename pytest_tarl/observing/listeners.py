@@ -1,4 +1,4 @@
-"""Subscribe the observer to topics, independently of the node."""
+"""Subscribe the observer to topics, separately from the node."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from pytest_tarl.sensors import Sensor
 Listener = Callable[[Any], None]
 NUMBER = "std_msgs/msg/Float64"
 WORD = "std_msgs/msg/String"
-DEPTH = 1000  # number of queued messages per topic; rclpy drops the oldest from a full queue
+DEPTH = 1000  # queue length per topic; rclpy drops the oldest message when the queue is full
 
 
 @dataclass(frozen=True)
 class Topics:
-    """The observed topics; `types` holds message types by topic.
+    """The observed topics, with message types by topic in `types`.
 
-    `reward` is the topic that closes steps, `mission` the one that delimits missions; either may be empty.
+    `reward` is the topic that closes steps, and `mission` the topic that delimits missions; either may be empty.
     """
 
     types: Mapping[str, str]
@@ -45,8 +45,8 @@ class Topics:
 
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
-    """Pass messages to the observer while a node runs. Raise LogError."""
-    # imported before any message type, because the library selects ROS 1 or ROS 2 messages
+    """Pass messages to the observer while the block runs the node. Raise LogError."""
+    # imported before any message type, because it decides between ROS 1 and ROS 2 messages
     import_module(library)
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
@@ -89,7 +89,7 @@ def _class(name: str) -> type[Any]:
 
 
 def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
-    """Subscribe before the node does, so that the observer gets messages first."""
+    """Subscribe before the node does, so that the observer receives messages first."""
     rospy = import_module("rospy")
     begin = rospy.init_node
 

@@ -1,7 +1,7 @@
-"""The log: a format line and records with length and checksum.
+"""The format of a log: a format line, then records with length and checksum.
 
-A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. All
-complete records can be read even if the writer was killed; the next writer removes an incomplete one.
+A record is `length, crc32` (two little-endian 32-bit numbers), followed by that many bytes of zlib-compressed JSON. All
+complete records can be read even if the writer was killed. The next writer removes an incomplete last record.
 
 FORMAT history:
 1  Records start, mission, steps, end. With formulas, steps and end also have `changes` (of signals), steps has
@@ -24,14 +24,14 @@ from pytest_tarl.framed import framed, next_payload
 
 FORMAT = 1
 MAGIC = b"tarl log 1\n"
-# maximum size of a record (bytes); a larger length means a damaged log
+# maximum size of a record in bytes; a larger length means that the log is damaged
 LARGEST = 1 << 26
 
 Record = dict[str, Any]
 
 
 class LogFile:
-    """A log opened for appending by one process. Raise LogError."""
+    """A log that one process has opened for appending. Raise LogError."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -71,7 +71,7 @@ class LogFile:
     def set_aside(self, keep: int = 0) -> None:
         """Rotate the log: rename it with the next free number (`missions.log.7`) and continue in a new file.
 
-        `keep` is the number of rotated files to keep, or 0 for all; the oldest files beyond that number are removed.
+        Keep the `keep` newest rotated files, or all if it is 0, and remove the others.
         """
         self.close()
         older = set_aside(self.path)
@@ -130,7 +130,7 @@ def _whole(file: BinaryIO, path: Path) -> int:
     start = file.read(len(MAGIC))
     if start != MAGIC:
         if MAGIC.startswith(start):
-            return 0  # the file is empty, or ends within its first line
+            return 0  # the file is empty, or ends in its first line
         raise _foreign(path)
     end = file.tell()
     while next_record(file) is not None:

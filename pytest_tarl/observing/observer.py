@@ -1,7 +1,7 @@
-"""Observe a node's sensors, rewards and missions for the writer process.
+"""Collect a node's sensor values, rewards and missions for the writer process.
 
-In a control cycle, the observer only appends numbers to lists; numbers are not visited by garbage collection. Every
-`PERIOD` seconds, a thread moves the lists to memory that the writer process shares.
+During a control cycle, the observer only appends numbers to lists, and the garbage collector does not visit numbers.
+Every `PERIOD` seconds, a thread moves the lists to memory shared with the writer process.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor
 
-PERIOD = 0.02  # time between two transfers (s); each transfer holds the interpreter lock for about 0.1 ms
+PERIOD = 0.02  # seconds between two transfers; each holds the interpreter lock for about 0.1 ms
 OUTCOMES = {"succeeded": True, "failed": False}
 
 
 NEVER = Rotation()
-_PLAIN = frozenset({type(None), float, int, bool, str})  # types of values that JSON keeps as they are
+_PLAIN = frozenset({type(None), float, int, bool, str})  # types that JSON stores unchanged
 
 
 class Observer:
-    """The observer of a node; messages may come from any thread.
+    """Observe a node; messages may come from any thread.
 
-    Slow work, such as conversion and disk access, happens in the writer process. Raise LogError if the log cannot be
+    Slow work, such as conversion and disk access, is left to the writer process. Raise LogError if the log cannot be
     written.
     """
 
@@ -55,25 +55,25 @@ class Observer:
             one.name: (at, reader(one.field), binner(one), following and not one.categories)
             for at, one in enumerate(self.sensors)
         }
-        self.signals = tuple(signals)  # the signals of formulas that are read from messages
+        self.signals = tuple(signals)  # signals of formulas that come from messages
         self._signal_readers = {one.name: reader(one.field) for one in self.signals}
-        self._following = following  # whether to record every change of a value, which formulas need
-        self._changes: deque[list[Any]] = deque()  # entries [seconds, name, value]; any thread may append
-        self._times: list[float] = []  # times at which steps were closed
+        self._following = following  # whether to record every change of a value, as formulas require
+        self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread may append
+        self._times: list[float] = []  # when steps were closed
         self._begun = monotonic()
         self._outlet = Outlet(log, {"format": FORMAT, **about}, rotation)
         self._idle = idle
         self._bins: list[int | None] = [None] * len(self.sensors)
         self._values: list[Any] = [None] * len(self.sensors)
-        self._numbers: dict[str, float] = {}  # values of the signals received in this mission
-        # earlier values of signals without a message in this mission
+        self._numbers: dict[str, float] = {}  # signal → value received in this mission
+        # signal → earlier value, for signals without a message in this mission
         self._before: dict[str, float] = {}
-        self._readings: list[Any] = []  # values of all sensors at each step, one step after another
+        self._readings: list[Any] = []  # values of all sensors, step after step
         self._active = monotonic()
         self.running = False  # whether a mission is in progress
-        self.problem = ""  # the first error of the observer; errors must not reach the node
-        self._lock = threading.RLock()  # keeps the records of several threads in order
-        # locked until `close`; an Event would cost the node more time
+        self.problem = ""  # the observer's first error, which must not reach the node
+        self._lock = threading.RLock()  # keeps records from several threads in order
+        # held until `close`; an Event would take more of the node's time
         self._over = threading.Lock()
         self._over.acquire()
         self._thread = threading.Thread(target=self._look, name="tarl-observer", daemon=True)
@@ -81,7 +81,7 @@ class Observer:
         self._thread.start()
 
     def told(self, sensor: Sensor, message: Any) -> None:
-        """Update a sensor whose message is about to reach the node."""
+        """Update a sensor from a message that is about to reach the node."""
         try:
             at, read, bin_of, followed = self._how[sensor.name]
             self._values[at] = value = read(message)
@@ -117,7 +117,7 @@ class Observer:
             self.stream.reward(reward)
 
     def begin(self) -> None:
-        """Begin a mission; a mission in progress ends as a success."""
+        """Begin a mission; if one is in progress, it ends as a success."""
         with self._lock:
             self.end(passed=True)
             self._flush()
@@ -130,7 +130,7 @@ class Observer:
             self._outlet.put("mission", time())
 
     def end(self, *, passed: bool, failure: str = "") -> None:
-        """End the mission, if one is in progress."""
+        """End the mission in progress, if any."""
         with self._lock:
             if not self.running:
                 return
@@ -143,13 +143,13 @@ class Observer:
             self.running = False
 
     def active(self) -> None:
-        """Note that the node is active; with `idle`, this begins a mission."""
+        """Note that the node is active; with `idle`, this starts a mission."""
         self._active = monotonic()
         if self._idle is not None and not self.running:
             self.begin()
 
     def order(self, word: str) -> None:
-        """Handle a message of the mission topic: begin, succeeded or failed."""
+        """Handle a message on the mission topic: begin, succeeded or failed."""
         if word == "begin":
             self.begin()
         elif word in OUTCOMES:
@@ -169,7 +169,7 @@ class Observer:
         return tuple(known) if len(known) == len(self._bins) else None
 
     def _look(self) -> None:
-        """Send recorded data, end idle missions and check the writer."""
+        """Send recorded data, end idle missions, and check the writer."""
         reported = False
         while not self._over.acquire(timeout=PERIOD):
             with self._lock:
@@ -186,7 +186,7 @@ class Observer:
 
     def _flush(self) -> None:
         cut = self.stream.cut(self._outlet.full)
-        steps = len(cut.rewards)  # number of steps to remove; outside a mission, they are dropped
+        steps = len(cut.rewards)  # steps to remove; outside missions, they are dropped
         values = steps * len(self.sensors)
         readings, self._readings = self._readings[:values], self._readings[values:]
         times, self._times = self._times[:steps], self._times[steps:]
@@ -197,7 +197,7 @@ class Observer:
             self._outlet.put("cells", cut.cells)
 
     def _taken(self) -> list[list[Any]]:
-        """Return the changes of signals that have not been written yet."""
+        """Return the signal changes that have not been written yet."""
         taken = []
         while self._changes:
             taken.append(self._changes.popleft())
@@ -212,4 +212,4 @@ def _plain(value: Any) -> Any:
     try:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
-        return None  # the value is no number; `told` reports it, and the cell stays unknown
+        return None  # not a number: `told` reports it, and the cell stays unknown

@@ -1,4 +1,4 @@
-"""Send messages through shared memory to the writer process."""
+"""Send messages to the writer process through shared memory."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from pytest_tarl.observing.ring import SIZE, Ring, shared_memory
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.observing.writer_main import LENGTH, PERIOD, READY
 
-MOST_WAITING = 1 << 26  # maximum size of queued messages (bytes); beyond this, events are dropped
+MOST_WAITING = 1 << 26  # maximum bytes of queued messages; beyond this, events are dropped
 ENDED = (
     f"The process that writes the log was ended: the last {PERIOD:g} s before that may be missing from the log, and "
     "all later records are lost."
 )
-_PIECE = SIZE // 4  # size of the pieces in which larger messages are sent (bytes)
-_PLAIN = 2  # version of marshal without references to repeated objects; it is faster to write
-_LOOKS = 10  # number of calls of `pump` between two checks that the writer still runs
-_PAUSE = 0.005  # time between two attempts while closing (s)
+_PIECE = SIZE // 4  # larger messages are sent in pieces of this many bytes
+_PLAIN = 2  # version of marshal without references to repeated objects, which is faster to write
+_LOOKS = 10  # calls of `pump` between two checks that the writer is still running
+_PAUSE = 0.005  # seconds between two attempts while closing
 
 
 class Outlet:
     """The sender of messages to the writer process.
 
-    `put` and `pump` never wait; callers hold a lock to keep messages in order. A forked child of the node's process
+    `put` and `pump` never wait. Callers hold a lock to keep messages in order. A forked child of the node's process
     sends nothing. Raise LogError if the log cannot be written.
     """
 
     def __init__(self, log: Path, about: Mapping[str, Any], rotation: Rotation) -> None:
         self.problem = ""  # why writing stopped
-        self._waiting: deque[bytes] = deque()  # pieces that did not fit into the ring yet
-        self._held = 0  # total size of the waiting pieces (bytes)
-        self._pumped = 0  # number of calls of `pump`
+        self._waiting: deque[bytes] = deque()  # pieces that did not fit into the shared memory yet
+        self._held = 0  # total bytes of the waiting pieces
+        self._pumped = 0  # calls of `pump`
         self._owner = os.getpid()
         memory = shared_memory()
         order = {
@@ -64,12 +64,12 @@ class Outlet:
 
     @property
     def full(self) -> bool:
-        """Return whether more than MOST_WAITING bytes are unsent; callers then stop sending events."""
+        """Return whether more than MOST_WAITING bytes are unsent, which means that events must be dropped."""
         return self._held > MOST_WAITING
 
     @property
     def unsent(self) -> int:
-        """Return the number of unread bytes, here and in shared memory."""
+        """Return the number of unread bytes, queued here and in shared memory."""
         return self._held + self._ring.unread
 
     def put(self, *message: Any) -> None:
@@ -82,7 +82,7 @@ class Outlet:
             self._queue(data)
 
     def pump(self) -> None:
-        """Send the queued pieces that fit, and check the writer."""
+        """Send as many queued pieces as fit, and check the writer."""
         if os.getpid() != self._owner:
             return
         self._pumped += 1
@@ -103,7 +103,7 @@ class Outlet:
             sleep(_PAUSE)
             self.pump()
         if self._process.stdin is not None:
-            # the writer ends when the pipe is closed, even if it has not read the mark of the end
+            # closing the pipe ends the writer, even if it has not read the end mark
             self._process.stdin.close()
             self._process.stdin = None
         last = self._said()

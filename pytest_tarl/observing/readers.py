@@ -1,7 +1,7 @@
-"""Read and bin sensor values fast, within a control cycle.
+"""Read and bin sensor values fast enough for a control cycle.
 
-The functions here return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and
-for values of the usual types. In all other cases, they call `reading` and `Sensor.bin`.
+The functions return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and for
+values of the usual types, and otherwise call `reading` and `Sensor.bin`.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from pytest_tarl.sensors import Sensor
 
 Read = Callable[[Any], Any]
 Bin = Callable[[Any], int | None]
-_EXACT = 2**53  # integers below this convert to float exactly
-_MOST = 64  # maximum number of message classes remembered per field
+_EXACT = 2**53  # smaller integers convert to float exactly
+_MOST = 64  # maximum number of message classes to remember per field
 
 
 def reader(field: str | Read | None) -> Read:
@@ -31,10 +31,10 @@ def reader(field: str | Read | None) -> Read:
     path = field or ""
     parts = path.split(".")
     if not all(part.isidentifier() and not hasattr(dict, part) for part in parts):
-        # `attrgetter` is not enough if the path has an index, or a name that is also an attribute of mappings
+        # `attrgetter` cannot read indices, or names that mappings also have as attributes
         return lambda message: field_value(message, path)
     fast = attrgetter(path)
-    known: set[type] = set()  # message classes for which the fast path is known to work
+    known: set[type] = set()  # message classes that the fast path can read
 
     def read(message: Any) -> Any:
         try:
@@ -45,7 +45,7 @@ def reader(field: str | Read | None) -> Read:
                 known.add(type(message))
             return value
         except AttributeError:
-            return field_value(message, path)  # the message contains a mapping, or lacks the field
+            return field_value(message, path)  # the message contains a mapping, or does not have the field
 
     return read
 

@@ -1,8 +1,8 @@
-"""A stream of bytes through memory that two processes share; neither side waits or makes system calls.
+"""A stream of bytes through memory shared by two processes; neither side waits or makes system calls.
 
-The memory holds two 64-bit counters (bytes written, bytes taken), and then a ring buffer. A piece is `length, crc32`
-and that many bytes. On processors with weak memory ordering, the reader may see the new counter before the bytes. The
-checksum then fails, and the reader tries again later.
+The memory starts with two 64-bit counters (bytes written, bytes taken), followed by a ring buffer. A piece is `length,
+crc32` and that many bytes. With weak memory ordering, the reader may see the new counter before the bytes; the checksum
+then fails, and the reader tries again later.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from zlib import crc32
 
 from pytest_tarl.framed import HEAD, framed, unpack_head
 
-SIZE = 1 << 20  # size of the buffer (bytes)
-_START = 16  # size of the counters (bytes)
+SIZE = 1 << 20  # bytes of the buffer
+_START = 16  # bytes of the counters
 
 
 def shared_memory() -> int:
-    """Return a file descriptor of new shared memory for a ring, filled with zeros.
+    """Return a file descriptor of new, zero-filled shared memory for a ring.
 
-    The memory is freed when its last descriptor is closed.
+    The memory is freed when the last descriptor is closed.
     """
     length = _START + SIZE
     if hasattr(os, "memfd_create"):
@@ -34,22 +34,22 @@ def shared_memory() -> int:
 
 
 class Ring:
-    """One end of the stream, with one writing and one reading thread."""
+    """One end of the stream; one thread writes and one reads."""
 
     def __init__(self, descriptor: int, *, writes: bool = False) -> None:
         self._memory = mmap.mmap(descriptor, 0)
         if writes:
-            self._memory[:] = bytes(len(self._memory))  # maps every page now, not during a control cycle
+            self._memory[:] = bytes(len(self._memory))  # maps every page now rather than in a control cycle
         self._size = len(self._memory) - _START
         self._counters = memoryview(self._memory)[:_START].cast("Q")
 
     @property
     def unread(self) -> int:
-        """Return the number of written bytes that are still unread."""
+        """Return the number of bytes written but not yet read."""
         return self._counters[0] - self._counters[1]
 
     def write(self, data: bytes) -> bool:
-        """Append a piece; return False if it does not fit at the moment."""
+        """Append a piece; return False if it does not fit now."""
         written, taken = self._counters
         piece = framed(data)
         length = len(piece)

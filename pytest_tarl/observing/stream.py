@@ -1,4 +1,4 @@
-"""A recorder that is emptied while the node runs; bounds the memory."""
+"""A recorder that is emptied while the node runs, to limit memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.sensors import Cell
 
-# maximum number of queued entries (two per event); later events are dropped and counted
+# maximum number of queued entries (two per event); further events are dropped and counted
 MOST_ENTRIES = 4_000_000
 
 
@@ -22,8 +22,8 @@ MOST_ENTRIES = 4_000_000
 class Chunk:
     """The events between two cuts, as columns.
 
-    Columns of events have shape (events,), columns of steps (steps,). `step` counts from the first step of the chunk.
-    Events after the last reward in the chunk belong to a step that the next chunk closes.
+    Columns of events have shape (events,), columns of steps (steps,). `step` counts from the chunk's first step. Events
+    after the chunk's last reward belong to a step that a later chunk closes.
     """
 
     cells: tuple[Cell, ...]
@@ -44,9 +44,9 @@ class Chunk:
 class Cut(NamedTuple):
     """The events since the last cut, as plain values."""
 
-    cells: list[Cell]  # cells that are new in this cut
-    latched: list[int]  # for each mark in the buffer, the index of the cell that is current there
-    rewards: list[int]  # indices of the marks in the buffer at which a step ends
+    cells: list[Cell]  # cells new in this cut
+    latched: list[int]  # for each mark in the buffer, the index of the current cell
+    rewards: list[int]  # indices of the marks at which a step ends
     totals: list[float]
     threads: list[
         tuple[list[Any], list[int]]
@@ -59,9 +59,9 @@ class Cut(NamedTuple):
 
 
 class Stream(Recorder):
-    """An endless recorder; `cut` returns and removes the events recorded so far."""
+    """An endless recorder; `cut` removes and returns the events recorded so far."""
 
-    _packing = False  # `reward` must not pack a buffer here, because any thread may call it
+    _packing = False  # any thread may call `reward`, which therefore must not pack a buffer
 
     def __init__(self) -> None:
         super().__init__(threads=True)
@@ -69,7 +69,7 @@ class Stream(Recorder):
         self._told = 0  # number of cells in earlier cuts
 
     def reward(self, total: float, parts: Mapping[str, float] | None = None) -> None:  # noqa: ARG002 - as the base
-        """Close a step with its reward; a log stores no parts of rewards."""
+        """Close a step with its reward; logs store no parts of rewards."""
         with self._lock:
             latched = self._latched
             self._rewards.append(len(latched))
@@ -77,9 +77,9 @@ class Stream(Recorder):
             self._totals.append(float(total))
 
     def cut(self, drop: bool = False) -> Cut:
-        """Take the events since the last call, in any thread.
+        """Take the events since the last call, from any thread.
 
-        To be fast, it only slices lists. With `drop` (for lack of memory), events are only counted; rewards and cells
+        It only slices lists, to be fast. With `drop` (when memory is short), events are only counted; rewards and cells
         are kept.
         """
         if drop:
@@ -97,9 +97,9 @@ class Stream(Recorder):
         return Cut(cells, latched, rewards, totals, threads)
 
     def relieve(self, most: int | None = None) -> None:
-        """Drop the events of threads with more than `most` entries; count them.
+        """Drop the events of threads with more than `most` entries, and count them.
 
-        The default of `most` is MOST_ENTRIES.
+        `most` is MOST_ENTRIES by default.
         """
         most = MOST_ENTRIES if most is None else most
         for buffer in tuple(self._buffers):
@@ -123,13 +123,13 @@ def chunk(cut: Cut, known: list[Cell]) -> Chunk:
 
 
 def merged(cuts: Sequence[Cut]) -> Cut:
-    """Merge consecutive cuts, at least one, into one."""
+    """Merge one or more consecutive cuts."""
     if len(cuts) == 1:
         return cuts[0]
     cells, latched, rewards, totals = list[Cell](), list[int](), list[int](), list[float]()
     threads: list[tuple[list[Any], list[int]]] = []
     for cut in cuts:
-        carried = 1 if latched else 0  # a cut repeats the last cell of the previous cut
+        carried = 1 if latched else 0  # a cut repeats the last cell of the previous one
         rewards += [mark + len(latched) - carried for mark in cut.rewards]
         threads += [([], [0] * len(latched)) for _ in cut.threads[len(threads) :]]
         for (entries, lengths), (new, marks) in zip(threads, cut.threads, strict=True):
@@ -142,17 +142,17 @@ def merged(cuts: Sequence[Cut]) -> Cut:
 
 
 def _in_order(one: Chunk) -> Chunk:
-    """Return a chunk sorted by step, and by thread within a step."""
+    """Return a chunk sorted by step, then by thread."""
     order = np.lexsort((one.thread, one.step))
     events = {name: getattr(one, name)[order] for name in ("site", "flow", "cell", "step", "thread")}
     return replace(one, **events)
 
 
 def _cut(entries: list[Any]) -> list[Any]:
-    """Remove complete events from the front, while the owning thread may append."""
+    """Remove complete events from the front while the owning thread may be appending."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
-        count -= 1  # the last entry is a site whose value the other thread has not appended yet
+        count -= 1  # the last entry is a site; its thread has not appended the value yet
     taken = entries[:count]
     del entries[:count]
     return taken
@@ -161,7 +161,7 @@ def _cut(entries: list[Any]) -> list[Any]:
 def _columns(
     entries: list[Any], lengths: list[int], latched: list[int], rewards: list[int]
 ) -> tuple[Ints, Floats, Ints, Ints]:
-    """Return site, flow, cell and step of every event of one thread, each of shape (events,)."""
+    """Return site, flow, cell and step of each event of a thread, each of shape (events,)."""
     site, flow, starts = paired(entries)
     before = np.searchsorted(starts, np.array(lengths, np.int64), side="left")
     between = np.diff(before, prepend=0, append=len(starts))

@@ -1,6 +1,6 @@
-"""Convert messages of an observer to records of the log, in the writer process.
+"""Convert an observer's messages to records of the log, in the writer process.
 
-Columns, base64, JSON, compression and disk access are handled here, so the node's process never waits for them.
+Columns, base64, JSON, compression and disk access all happen here, so the node's process never waits for them.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from pytest_tarl.observing.log_format import LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Cut, chunk, merged
 from pytest_tarl.sensors import Cell
 
-MOST_HELD = 200_000  # approximate maximum number of entries (two per event) per record; bounds the memory
+MOST_HELD = 200_000  # approximate maximum number of entries (two per event) per record; limits memory
 
 
 @dataclass(frozen=True)
 class Rotation:
-    """When to rotate a log: before a mission, if the log has at least `size` bytes.
+    """When to rotate a log: before a mission, once the log has `size` bytes.
 
     `keep` is the number of rotated files to keep, or 0 for all.
     """
@@ -39,7 +39,7 @@ class Writer:
         self._about = about
         self._rotation = rotation
         self._cells: list[Cell] = []
-        self._cuts: list[Cut] = []  # cuts of the current mission that are not written yet
+        self._cuts: list[Cut] = []  # cuts of the current mission still to be written
         self._readings: list[list[Any]] = []
         self._times: list[float] = []
         self._changes: list[list[Any]] = []
@@ -48,7 +48,7 @@ class Writer:
         self._held = 0  # number of entries in the cuts
 
     def take(self, message: tuple[Any, ...]) -> None:
-        """Process one message; events may wait until `sync` or `close`."""
+        """Process one message; events may be held back until `sync` or `close`."""
         what, *parts = message
         getattr(self, f"_take_{what}")(*parts)
 
@@ -114,7 +114,7 @@ class Writer:
 def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
     """Return the record of some steps.
 
-    The order of the fields must not change, because the fast path of the watch relies on it (monitoring/log_blocks.py).
+    The order of the fields must not change: the fast path of the watch relies on it (monitoring/log_blocks.py).
     """
     return {
         "kind": "steps",
@@ -132,11 +132,11 @@ def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
 
 
 def packed(column: Ints | Floats) -> str:
-    """Return a column, shape (rows,), as text: base64 of its little-endian bytes."""
+    """Return a column, shape (rows,), as base64 text of its little-endian bytes."""
     little = column.astype(column.dtype.newbyteorder("<"))
     return base64.b64encode(little.tobytes()).decode()
 
 
 def unpacked(text: str, kind: str) -> Any:
-    """Return a column from its text; `kind` is numpy's name of its type."""
+    """Return a column from its text; `kind` is its numpy type."""
     return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<")).astype(kind)

@@ -1,7 +1,7 @@
-"""The writer process: copy messages of an observer from shared memory to the log.
+"""The writer process: copy an observer's messages from shared memory to the log.
 
-The writer ends on request, or when standard input closes because the node's process has ended. In both cases
-it first writes all messages that were sent.
+The writer stops on request, or when its standard input closes because the node's process has ended. In both cases it
+first writes everything that was sent.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from pytest_tarl.observing.log_format import LogFile
 from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 
-PERIOD = 0.25  # time between two syncs (s); a power cut loses about the records of one such period
-LENGTH = struct.Struct("<I")  # length of a message (bytes); 0 marks the end
+PERIOD = 0.25  # seconds between two syncs; a power cut loses about one period of records
+LENGTH = struct.Struct("<I")  # bytes of a message; 0 marks the end
 READY = "ready"
-NICER = 5  # nice value that gives the node's threads priority
-_POLL = 0.02  # time between two checks of the shared memory (s)
+NICER = 5  # nice value, which gives the node's threads priority
+_POLL = 0.02  # seconds between two checks of the shared memory
 
 
 def main() -> int:
     """Run the writer; print that it is ready, or why it cannot write."""
     for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        # signals are left to the node's process, which decides when the writer ends
+        # signals are for the node's process, which decides when the writer stops
         signal.signal(one, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):
-        # use the normal scheduler even if the node has a real-time scheduler
+        # the normal scheduler, even if the node has a real-time one
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     with contextlib.suppress(OSError):
         os.nice(NICER)
@@ -66,7 +66,7 @@ def main() -> int:
 def _serve(writer: Writer, ring: Ring) -> None:
     waiting, due, over = bytearray(), monotonic() + PERIOD, False
     while not over:
-        # check the end before reading, so that the last read misses nothing
+        # check for the end before reading, so that the last read misses nothing
         over = bool(select.select([sys.stdin.fileno()], [], [], _POLL)[0])
         while (piece := ring.read()) is not None:
             waiting += piece
