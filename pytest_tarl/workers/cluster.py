@@ -1,4 +1,4 @@
-"""Workers on a Dask cluster, one process per thread."""
+"""Workers on a Dask cluster; each thread of the cluster has one worker process."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
 REACHED = 10  # maximum time to wait for a connection to the scheduler (s)
-RETRIES = 2  # maximum number of retries after the loss of an episode's machine
+RETRIES = 2  # maximum number of retries after an episode's machine was lost
 
-_pools: list[Pool] = []  # at most one pool per worker process of the cluster
+_pools: list[Pool] = []  # one pool per process of the cluster
 
 
 def serve_here(post: Post, request: bytes) -> bytes:
@@ -24,14 +24,14 @@ def serve_here(post: Post, request: bytes) -> bytes:
 
 
 def leave() -> None:
-    """End the processes on this machine."""
+    """End the worker processes on this machine."""
     while _pools:
         _pools.pop().close()
 
 
 @contextmanager
 def joined(address: str) -> Iterator[tuple[Executor, int]]:
-    """Connect to a cluster; return executor and parallel episodes. Raise SettingsError."""
+    """Connect to a cluster; return an executor and the number of parallel episodes. Raise SettingsError."""
     try:
         from distributed import Client
     except ImportError:

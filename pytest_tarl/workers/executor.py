@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# plugins that a worker must not load: they write reports, cache, debug or start workers
+# plugins that a worker must not load, because they write reports, cache, debug or start workers
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,
@@ -59,7 +59,7 @@ class EpisodeExecutor:
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode and return its result.
 
-        Raise TarlError if the test cannot run as configured; raise pytest's Exit or Skipped if the test did.
+        Raise TarlError if the test cannot run as configured. Raise pytest's Exit or Skipped if the test did.
         """
         return self.begin(plan).result()
 
@@ -78,7 +78,7 @@ class Answer:
     def result(self) -> EpisodeRun:
         """Wait for the episode and return its result.
 
-        Raise TarlError if the episode could not run; raise pytest's Exit or Skipped if the test did.
+        Raise TarlError if the episode could not run. Raise pytest's Exit or Skipped if the test did.
         """
         try:
             return protocol.answered(self.plan, self.future.result())
@@ -105,12 +105,12 @@ class Answer:
         return self.future.cancel()
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result, in the thread that receives it."""
+        """Call a function with the result, in the thread that receives the result."""
 
         def ended(future: Future[bytes]) -> None:
             if future.cancelled() or future.exception() is not None:
                 return
-            with suppress(TarlError):  # the caller gets this error from `result`, not from this callback
+            with suppress(TarlError):  # the caller gets this error from `result`
                 call(protocol.answered(self.plan, future.result()))
 
         self.future.add_done_callback(ended)
@@ -120,7 +120,7 @@ class Answer:
 def opened(
     item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor], options: Options
 ) -> Iterator[EpisodeExecutor]:
-    """Yield an executor for a test; end all its workers on exit."""
+    """Yield an executor for a test; end its workers on exit."""
     post = posted(item, instruments, sensors)
     if options.cluster is not None:
         from pytest_tarl.workers.cluster import joined, serve_here
@@ -139,7 +139,7 @@ def opened(
 
 
 def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
-    """Return all that a worker needs to prepare the item."""
+    """Return everything a worker needs to prepare the item."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
     rooted = {"rootdir": str(config.rootpath)}
@@ -148,7 +148,7 @@ def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Se
     plugins = [*config.option.plugins, "no:terminal"]
     folder = str(config.invocation_params.dir)
     start = {
-        # relative entries become absolute, because the worker may have another working directory
+        # absolute, because the worker may have another working directory
         "path": [str(Path(folder, entry)) for entry in sys.path],
         "options": plain | dict(OFF) | rooted | {"plugins": plugins, "basetemp": None},
         "target": f"{item.path}::{item.nodeid.partition('::')[2]}",

@@ -1,4 +1,4 @@
-"""Worker processes, with retries after a worker's death."""
+"""Worker processes, with retries after a worker dies."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from pytest_tarl.held_interpreter import SIGNAL
 from pytest_tarl.ros.blame import describe_first
 from pytest_tarl.workers import protocol
 
-TRIES = 3  # maximum number of runs of an episode whose worker dies
-PATIENCE = 5.0  # time to tear down fixtures before a worker is killed (s)
-# number of checks without a heartbeat, one per second, after which a worker is ended; a suspended machine makes no
-# checks
+TRIES = 3  # maximum number of runs of an episode if its worker dies
+PATIENCE = 5.0  # time for tearing down fixtures before a worker is killed (s)
+# a worker is ended after this many checks (one per second) without a heartbeat; while the machine is suspended, there
+# are no checks
 SILENCE = 180
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
 
 
 class WorkerDiedError(TarlError):
-    """A worker process ended during an episode."""
+    """A worker process died during an episode."""
 
 
 class WorkerHeldError(TarlError):
@@ -37,12 +37,12 @@ class WorkerHeldError(TarlError):
 
 @dataclass(frozen=True)
 class Post:
-    """The job of a worker: its folder, pytest's configuration, and its first message."""
+    """A worker's job: folder, pytest's configuration, and the first message."""
 
     folder: str
     start: str
     first: bytes
-    loud: bool = False  # whether to show the output of nodes
+    loud: bool = False  # whether to show the nodes' output
 
 
 class Worker:
@@ -81,7 +81,7 @@ class Worker:
             protocol.write(asked, request)
             while (answer := protocol.read(told)) == protocol.ALIVE:
                 self._silent = 0
-        except (OSError, ValueError):  # ValueError: `end` has closed the pipe
+        except (OSError, ValueError):  # ValueError if `end` has closed the pipe
             answer = None
         finally:
             self._asked = False
@@ -95,7 +95,7 @@ class Worker:
     def _listen(self) -> None:
         """Check for heartbeats once per second.
 
-        After SILENCE checks without a heartbeat, end the worker, so that it cannot block the run.
+        After SILENCE checks without one, end the worker, so that it cannot block the run.
         """
         while not self._over.wait(1.0):
             self._silent += self._asked
@@ -104,7 +104,7 @@ class Worker:
                 with suppress(OSError, subprocess.TimeoutExpired):
                     self._process.send_signal(
                         signal.SIGABRT
-                    )  # faulthandler, enabled by pytest, then prints the stack
+                    )  # pytest has enabled faulthandler, which then prints the stack
                     self._process.wait(PATIENCE)
                 self._process.kill()
                 return
@@ -122,7 +122,7 @@ class Worker:
         return ""
 
     def dismiss(self) -> None:
-        """Let the worker tear down, or end it after PATIENCE seconds."""
+        """Let the worker tear down; end it after PATIENCE seconds if it has not finished."""
         with suppress(OSError, ValueError):
             protocol.write(self._pipes()[0], b"")
         with suppress(subprocess.TimeoutExpired):
@@ -132,13 +132,13 @@ class Worker:
     def end(self) -> None:
         """End the worker immediately.
 
-        Two threads may call this: the one that waits for the worker and the one that stops the run.
+        Two threads may call this: the one waiting for the worker, and the one stopping the run.
         """
         self._over.set()
         self._process.kill()
         self._process.wait()
         for pipe in (*self._pipes(), self._log):
-            with suppress(OSError, ValueError):  # ValueError: another thread has just closed the pipe
+            with suppress(OSError, ValueError):  # ValueError if another thread has just closed the pipe
                 pipe.close()
 
     def _pipes(self) -> tuple[BinaryIO, BinaryIO]:
@@ -149,7 +149,7 @@ class Worker:
 
 
 def place_held(log: str) -> str:
-    """Return the place of the innermost user code in faulthandler's output, or ""."""
+    """Return the place of the innermost user code in faulthandler's output, or an empty text."""
     ours = str(WORKER_MAIN.parent.parent)
     frames = [
         (file, int(line), function)
@@ -160,7 +160,7 @@ def place_held(log: str) -> str:
 
 
 class Pool:
-    """The workers of this process by job, for several threads."""
+    """The workers of this process by job; several threads may use them."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -169,14 +169,14 @@ class Pool:
         self._closed = False
 
     def serve(self, post: Post, request: bytes) -> bytes:
-        """Run a request. Raise WorkerDiedError if TRIES workers in a row died."""
+        """Run a request. Raise WorkerDiedError if TRIES workers died in a row."""
         for _ in range(TRIES - 1):
             with suppress(WorkerDiedError):
                 return self._once(post, request)
         return self._once(post, request)
 
     def close(self) -> None:
-        """Dismiss the idle workers and end the others."""
+        """Dismiss idle workers and end the others."""
         with self._lock:
             self._closed = True
             busy, idle = self._busy[:], [worker for all_of in self._idle.values() for worker in all_of]
@@ -214,7 +214,7 @@ class Pool:
             return waiting.pop() if waiting else None
 
     def _move(self, worker: Worker, post: Post | None) -> None:
-        """Remove a busy worker; with a `post`, keep it for this job."""
+        """Remove a worker from the busy ones; if `post` is given, keep it for that job."""
         with self._lock:
             self._busy.remove(worker)
             if post is not None:

@@ -1,4 +1,4 @@
-"""Messages between a run and its workers: JSON, then the columns of a trace."""
+"""Messages between a run and its workers: JSON, followed by the columns of a trace."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TOLD = (
 )  # fmt: skip
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
-ALIVE = b""  # heartbeat: shows that the worker's Python threads can run
+ALIVE = b""  # heartbeat, which shows that the worker's Python threads can run
 
 
 def write(pipe: BinaryIO, message: bytes) -> None:
@@ -34,7 +34,7 @@ def write(pipe: BinaryIO, message: bytes) -> None:
 
 
 def read(pipe: BinaryIO) -> bytes | None:
-    """Receive one message, or None if the pipe was closed."""
+    """Receive one message; return None if the pipe was closed."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         return None
@@ -67,7 +67,7 @@ def planned(message: bytes) -> EpisodePlan:
 
 
 def run_message(run: EpisodeRun) -> bytes:
-    """Encode the result of an episode, without its plan."""
+    """Encode an episode's result, without its plan."""
     trace = run.trace
     arrays = {name: getattr(trace, name) for name in COLUMNS}
     arrays |= {f"part {name}": column for name, column in trace.parts.items()}
@@ -95,9 +95,9 @@ def run_message(run: EpisodeRun) -> bytes:
 
 
 def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
-    """Decode the result of an episode.
+    """Decode an episode's result.
 
-    If the episode has no result, raise the error that the worker reported: a TarlError, SkippedError, or EndedError.
+    If there is no result, raise the error that the worker reported: a TarlError, SkippedError or EndedError.
     """
     head, arrays = _parted(message)
     if "error" in head:
@@ -118,22 +118,22 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
 
 
 def refused(message: bytes) -> None:
-    """Raise the TarlError encoded in a message."""
+    """Raise the TarlError in a message."""
     head, _ = _parted(message)
     raise _error(head["error"])(head["text"])
 
 
 def error_message(problem: TarlError) -> bytes:
-    """Encode the error that prevented an episode."""
+    """Encode the error for which an episode could not run."""
     return _joined({"error": type(problem).__name__, "text": str(problem)}, {})
 
 
 class SkippedError(TarlError):
-    """The test skipped itself in a worker; the message is its reason."""
+    """The test skipped itself in a worker; the message is the reason."""
 
 
 class EndedError(TarlError):
-    """The test ended the whole run by `pytest.exit`, with this reason."""
+    """The test ended the whole run with `pytest.exit`; the message is the reason."""
 
 
 def _error(name: str) -> Callable[[str], TarlError]:

@@ -1,4 +1,4 @@
-"""Replay bags in a worker, with the recording's site numbers."""
+"""Replay bags in a worker, with the site numbers of the recording."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pytest_tarl.sensors import binning_digest
 
 @dataclass(frozen=True)
 class RenumberedRollout:
-    """A rollout that renumbers site n to `number[n]`, or drops it for -1."""
+    """A rollout that changes site n to `number[n]`, or drops it if that is -1."""
 
     rollout: ItemRollout
     number: Ints
@@ -40,10 +40,10 @@ class RenumberedRollout:
 def replaying(
     item: pytest.Function, marked: Designation, sensors: str, sites: Sequence[str]
 ) -> RenumberedRollout:
-    """Return a rollout that replays bags; `sites` holds the ids of the recorded sites, in the order of their numbers.
+    """Return a rollout that replays bags; `sites` has the ids of the recorded sites, ordered by number.
 
     `sensors` is the digest of the recorded sensors and bins. Raise FixtureError if the marker's sensors differ,
-    SettingsError if the marker cannot judge bags, AnalysisError if the nodes cannot be analysed.
+    SettingsError if the marker cannot judge bags, and AnalysisError if the nodes cannot be analysed.
     """
     check(marked)
     if binning_digest(marked.sensors) != sensors:

@@ -33,17 +33,17 @@ OFF: Mapping[str, object] = {
 
 @dataclass
 class Replays:
-    """The worker that replays bags; the first bag starts it."""
+    """The worker that replays bags; it starts with the first bag."""
 
     fixture: Fixture
-    root: Path  # folder of the project; the recording's test ID is relative to it
+    root: Path  # project folder; the test ID in the recording is relative to it
     _pool: Pool = field(default_factory=Pool)
     _post: Post | None = None
 
     def __call__(self, bag: Path, seed: int) -> EpisodeRun:
         """Return the mission of a bag.
 
-        Raise LogError if this bag cannot be replayed, and another TarlError if no bag can be replayed.
+        Raise LogError if this bag cannot be replayed, or another TarlError if no bag can be.
         """
         plan = EpisodePlan(seed, record=True, bag=bag.resolve())
         self._post = self._post or self._posted(bag)

@@ -1,4 +1,4 @@
-"""The main loop of a worker: one test, one episode per request."""
+"""The main loop of a worker: it runs one episode of one test per request."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from pytest_tarl.workers import protocol
 from pytest_tarl.workers.replaying import replaying
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
-BEAT = 1.0  # time between two heartbeats (s)
-ENDED = 70  # exit status if the parent run has ended
+BEAT = 1.0  # seconds between two heartbeats
+ENDED = 70  # exit status after the parent run has ended
 
 
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
     """Serve the parent process until it closes the pipe or exits.
 
-    `requests` and `answers` are descriptors of pipes. `config` is pytest's configuration or, if there is none,
-    `problem` is the error.
+    `requests` and `answers` are pipe descriptors. `config` is pytest's configuration; if there is none, `problem` is
+    the error.
     """
     alive, told = os.pipe()
     _thread.start_new_thread(_forwarded, (requests, told))
@@ -64,12 +64,12 @@ class Server:
         self.turn = threading.Lock()
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
-        """Keep the reason why a test could not be collected."""
+        """Store the reason why a test could not be collected."""
         if report.failed:
             self.problems.append(report.longreprtext)
 
     def pytest_internalerror(self, excrepr: object) -> None:
-        """Keep an internal error of pytest or a plugin."""
+        """Store an internal error of pytest or of a plugin."""
         self.problems.append(str(excrepr))
 
     def pytest_sessionstart(self, session: pytest.Session) -> None:
@@ -114,7 +114,7 @@ class Server:
             protocol.write(self.answers, message)
 
     def _beat(self) -> None:
-        """Send heartbeats; the parent ends a worker that stops sending them."""
+        """Send heartbeats; a worker without heartbeats is ended by its parent."""
         pause = threading.Event()
         with suppress(OSError, ValueError):  # the parent run has ended
             while not pause.wait(BEAT):
@@ -136,7 +136,7 @@ def _nodeid(item: pytest.Item) -> str:
 
 
 def answer(rollout: Rollout, request: bytes) -> bytes:
-    """Run the requested episode; if it fails, return the error as an answer."""
+    """Run the requested episode; if it fails, return the error as the answer."""
     try:
         return protocol.run_message(rollout(protocol.planned(request)))
     except TarlError as problem:
@@ -152,7 +152,7 @@ def answer(rollout: Rollout, request: bytes) -> bytes:
 
 
 def instruments(given: dict[str, Any]) -> Instruments:
-    """Return the instruments: the sites to record in each node."""
+    """Return the instruments: which sites to record in each node."""
     positions = {
         Path(path): {(line, column): number for line, column, number in places}
         for path, places in given["positions"].items()
@@ -161,10 +161,10 @@ def instruments(given: dict[str, Any]) -> Instruments:
 
 
 def _forwarded(requests: int, told: int) -> None:
-    """Forward requests. If the parent run has ended, end this process immediately, even while a node runs.
+    """Forward requests. When the parent run ends, end this process at once, even while a node runs.
 
-    The function runs in a thread that `threading` does not list, because the recorder assumes that every listed thread
-    runs nodes.
+    The thread that runs this is not listed by `threading`, because the recorder assumes that every listed thread runs
+    nodes.
     """
     while chunk := os.read(requests, 1 << 16):
         while chunk:

@@ -1,4 +1,4 @@
-"""Entry script of a worker; imports pytest before TARL."""
+"""The script that starts a worker; it imports pytest before TARL."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import sys
 
 
 def main() -> None:
-    """Move the pipes away, configure pytest and serve requests."""
-    # Ctrl-C is handled by the parent run, which ends its workers
+    """Move the pipes to other descriptors, configure pytest and serve requests."""
+    # the parent run handles Ctrl-C and ends its workers
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     pipes = _pipes()
     start = json.loads(sys.argv[1])
@@ -20,11 +20,11 @@ def main() -> None:
     problem = ""
     config = None
     try:
-        # the worker gets the arguments of the command line, which pytest parses here
+        # the arguments of the command line, which pytest parses here
         if "arguments" in start:
             config = _prepareconfig(start["arguments"])
             vars(config.option).update(start["options"])
-        else:  # pytest reads `-p no:` from these options only after it has imported the plugins
+        else:  # pytest reads `-p no:` from these options too late, after importing the plugins
             blocked = [f"-p{name}" for name in start["options"]["plugins"] if name.startswith("no:")]
             config = Config.fromdictargs(start["options"], [start["target"], *blocked])
     except (Exception, SystemExit) as refused:
