@@ -1,4 +1,4 @@
-"""Ready-made faults of topics and nodes, as directions of `Drift.space`: `faults.bias("/odom", "x", 0.0, 0.5)`."""
+"""Ready-made faults of topics and nodes for `Drift.space`, such as `faults.bias("/odom", "x", 0.0, 0.5)`."""
 
 from pytest_tarl.faults.bias import bias
 from pytest_tarl.faults.dropout import dropout

@@ -1,4 +1,4 @@
-"""A constant offset, like that of a wrongly mounted or calibrated sensor."""
+"""A constant offset, as from a wrongly mounted or calibrated sensor."""
 
 from __future__ import annotations
 

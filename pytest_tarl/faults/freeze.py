@@ -1,4 +1,4 @@
-"""A frozen value, like that of a driver that repeats its last reading while the sensor is disconnected."""
+"""A frozen value: a driver repeats its last reading while the sensor is disconnected."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def freeze(topic: str, most: float, *, at: float = 0.0) -> TopicFault:
-    """Return a fault that repeats the topic's last message for up to `most` seconds, starting at the moment `at`.
+    """Return a fault that repeats the topic's last message for up to `most` seconds from the moment `at` on.
 
-    Raise SettingsError for an invalid moment.
+    Raise SettingsError if the moment is invalid.
     """
     begins = moment(at)
     if begins is None:

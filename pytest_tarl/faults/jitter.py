@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def jitter(topic: str, most: float) -> TopicFault:
-    """Return a fault that delays each message by a random time, uniform from 0 to a size of up to `most` seconds."""
+    """Return a fault that delays each message by a random time, uniform from 0 to a size of up to `most` s."""
 
     def begin(size: float, draws: np.random.Generator) -> Channel:
-        arrival = [0.0]  # time (s) at which the previous message arrived
+        arrival = [0.0]  # when the previous message arrived (s)
 
         def delayed(message: Any, now: float) -> Arrivals:
             arrival[0] = max(arrival[0], now + size * float(draws.random()))

@@ -1,4 +1,4 @@
-"""A constant delay, as caused by slow processing or a long network path; header stamps stay unchanged."""
+"""A constant delay, as from slow processing or a long network path; header stamps do not change."""
 
 from __future__ import annotations
 

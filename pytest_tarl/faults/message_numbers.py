@@ -1,4 +1,4 @@
-"""Change numbers in a message; fields are named as for sensors, such as `pose.pose.position.x` or `ranges.0`."""
+"""Change numbers in a message; fields are written as for sensors, such as `pose.pose.position.x` or `ranges.0`."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from pytest_tarl.field_paths import field_value
 
 
 def altered(message: Any, field: str, change: Callable[[float], float]) -> Any:
-    """Return a copy of a message with every number of a field changed; whole numbers stay whole.
+    """Return a copy of a message in which every number of a field is changed; integers stay integers.
 
-    Raise AttributeError, IndexError, KeyError or TypeError if the message has no such number.
+    Raise AttributeError, IndexError, KeyError or TypeError if the field is missing or not a number.
     """
     copy = deepcopy(message)
     store(copy, field, _changed(field_value(copy, field), change))
@@ -38,7 +38,7 @@ def store(message: Any, field: str, value: Any) -> None:
 
 
 def no_such_field(name: str, kind: str, topic: str, field: str, message: Any) -> SettingsError:
-    """Return the error for a fault of a field that the messages lack, or that is not a number."""
+    """Return the error for a fault of a field that is missing from the messages or not a number."""
     return SettingsError(
         f"faults.{kind} of {name!r}: a message on {topic} ({type(message).__name__}) has no number {field!r}. Correct "
         "the field in the marker."
@@ -61,7 +61,7 @@ def _changed(value: Any, change: Callable[[float], float]) -> Any:
 
 
 def _changed_array(value: Any, change: Callable[[float], float]) -> Any:
-    """Return a changed numpy array or scalar of the same type."""
+    """Return a changed numpy array or scalar with the same type."""
     import numpy as np
 
     changed = np.array([change(float(one)) for one in np.ravel(value)]).reshape(np.shape(value))

@@ -1,4 +1,4 @@
-"""White noise, like that of a cheap or ageing sensor or of interference."""
+"""White noise, as from a cheap or ageing sensor or from interference."""
 
 from __future__ import annotations
 

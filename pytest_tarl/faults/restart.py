@@ -1,4 +1,4 @@
-"""A node that crashes and is started again, as by a launch file with `respawn`."""
+"""A node that crashes and is restarted, as by a launch file with `respawn`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeRestart:
-    """End a node's process at the moment `at` (s), and restart it after a time that is the fault's size (s)."""
+    """End a node's process at the moment `at` (s), and restart it after the fault's size (s)."""
 
     node: str
     at: float
@@ -26,7 +26,7 @@ class NodeRestart:
         ros.interrupt(self.node, self.at, size)
 
     def check(self, ros: Any, name: str) -> None:
-        """Raise SettingsError if no node of that name was started."""
+        """Raise SettingsError if no node of this name was started."""
         started = sorted({process.name for process in ros.processes})
         if self.node not in started:
             raise SettingsError(
@@ -37,9 +37,9 @@ class NodeRestart:
 
 
 def restart(node: str, most: float, *, at: float) -> NodeRestart:
-    """Return a fault that ends a node at the moment `at` and starts it again after up to `most` seconds.
+    """Return a fault that ends a node at the moment `at` and restarts it after up to `most` seconds.
 
-    The new process starts without the state of the old one. Raise SettingsError for an invalid name or moment.
+    The new process starts without the old one's state. Raise SettingsError if the name or the moment is invalid.
     """
     if not isinstance(node, str) or not node:
         raise SettingsError(f"faults.restart: name the node that tarl.start starts, got {node!r}.")

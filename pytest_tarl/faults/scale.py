@@ -1,4 +1,4 @@
-"""A constant factor, as caused by a worn wheel behind an encoder or by a wrong unit."""
+"""A constant factor, as from a worn wheel with an encoder, or a wrong unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two swapped axes, as caused by a sensor mounted at an angle of 90° or by a different frame convention."""
+"""Two swapped axes, as from a sensor mounted at an angle of 90°, or another frame convention."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def swapped(topic: str, first: str, second: str) -> TopicFault:
-    """Return a fault that is off or on; when on, it exchanges the values of two fields.
+    """Return a fault that exchanges the values of two fields; it is either on or off.
 
     Raise SettingsError for invalid arguments.
     """

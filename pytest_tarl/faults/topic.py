@@ -1,4 +1,4 @@
-"""The common base of topic faults: a channel through which the messages of a topic pass."""
+"""The common base of topic faults: a channel that the topic's messages pass through."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OFF_ON = Choice((False, True))
 class TopicFault:
     """A fault of all messages on one topic.
 
-    `begin` creates the channel of an episode from the fault's size and random numbers.
+    `begin` creates the channel for an episode from the fault's size and random numbers.
     """
 
     kind: str
@@ -35,7 +35,7 @@ class TopicFault:
     field: str = ""
 
     def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:
-        """Pass the topic's messages through the fault. Raise SettingsError if a message lacks the fault's field."""
+        """Pass the topic's messages through the fault. Raise SettingsError if a message lacks the field."""
         channel = self.begin(size, draws)
 
         def passed(message: Any, now: float) -> Arrivals:
@@ -47,7 +47,7 @@ class TopicFault:
         ros.bus.interpose(self.topic, passed)
 
     def check(self, ros: Any, name: str) -> None:
-        """Raise SettingsError if an episode had no message on the topic."""
+        """Raise SettingsError if the topic had no message in the episode."""
         carried = sorted(place.name for place in ros.bus.topics() if place.carried)
         if ros.bus.topic(self.topic).carried:
             return
@@ -64,7 +64,7 @@ def of_field(
     extent: Span | Choice,
     change: Callable[[float, np.random.Generator], Callable[[float], float]],
 ) -> TopicFault:
-    """Return a fault that changes each number of a field separately. Raise SettingsError for invalid arguments."""
+    """Return a fault that changes each number of a field on its own. Raise SettingsError for invalid arguments."""
     require_text(kind, "topic", topic)
     require_text(kind, "field", field)
     field = dotted(field)
@@ -79,7 +79,7 @@ def of_field(
 def of_topic(
     kind: str, topic: str, extent: Span | Choice, begin: Callable[[float, np.random.Generator], Channel]
 ) -> TopicFault:
-    """Return a fault that acts on whole messages. Raise SettingsError for an invalid topic."""
+    """Return a fault that changes whole messages. Raise SettingsError for an invalid topic."""
     require_text(kind, "topic", topic)
     return TopicFault(kind, topic, extent, begin)
 
@@ -87,7 +87,7 @@ def of_topic(
 def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     """Return the range of a fault's sizes.
 
-    Raise SettingsError if the range does not include `none`, the size at which there is no fault.
+    Raise SettingsError if the range lacks `none`, the size of no fault.
     """
     found = span(f"faults.{kind}(…, {low!r}, {high!r})", low, high, None)
     if not found.low <= none <= found.high:
@@ -98,12 +98,12 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     return Span(found.low, found.high, none)
 
 
-# maximum duration in a fault (s): about 30 years, which fit into 64 bits as nanoseconds
+# maximum duration in a fault (s): about 30 years, which fits into 64 bits as nanoseconds
 LONGEST = 1e9
 
 
 def moment(value: Any) -> float | None:
-    """Return a moment in s that the clock can represent, or None for any other value."""
+    """Return a time in s that the clock can represent, or None for any other value."""
     found = finite_number(value)
     return found if found is not None and 0.0 <= found <= LONGEST else None
 
