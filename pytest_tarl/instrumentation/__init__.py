@@ -1,1 +1,1 @@
-"""Instrument nodes: number the sites (statements to record), transform the code, and record a trace per episode."""
+"""Instrument nodes: number the sites (statements to record), transform the code, and record one trace per episode."""

@@ -15,7 +15,7 @@ def first_evaluated_in(body: list[ast.stmt]) -> ast.expr | ast.stmt:
 
 
 def entry_of(node: Function) -> Where:
-    """Return the first node that runs in a function's body, or the function itself if nothing in it runs."""
+    """Return the first node that runs in a function's body; if nothing in it runs, the function itself."""
     at = _entry(node)
     return start_of(_first_part(node.body[at]) if at < len(node.body) else node)
 
@@ -32,7 +32,7 @@ def parameters(arguments: ast.arguments) -> list[ast.arg]:
 
 
 def message_parameter(node: Function, *, in_class: bool) -> str | None:
-    """Return the name of the parameter that receives the message: the first one after `self` or `cls`."""
+    """Return the name of the parameter that receives the message: the first one except `self` or `cls`."""
     static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in node.decorator_list)
     positional = [parameter.arg for parameter in (*node.args.posonlyargs, *node.args.args)]
     named = positional[1:] if in_class and not static else positional
@@ -55,6 +55,6 @@ def _first_part(node: ast.stmt) -> ast.expr | ast.stmt:
 
 
 def _is_declaration(node: ast.stmt) -> bool:
-    """Return whether a statement runs no code: global, nonlocal or a bare annotation."""
+    """Return whether a statement runs no code: global, nonlocal, or an annotation without a value."""
     bare = isinstance(node, ast.AnnAssign) and node.value is None
     return bare or isinstance(node, (ast.Global, ast.Nonlocal))

@@ -1,7 +1,8 @@
-"""Compiled code of instrumented files, kept between runs below `.tarl/cache`.
+"""Keep the compiled code of instrumented files below `.tarl/cache` between runs.
 
-The name of an entry is a digest of all inputs of its code. The entry contains a digest of its contents, and is written
-to a temporary file that is then renamed. A damaged, foreign or unwritable entry only costs a compilation.
+The name of an entry is a digest of everything that its code depends on. The entry contains a digest of its contents; it
+is written to a temporary file, which is then renamed. An entry that is damaged, foreign or cannot be written only costs
+a compilation.
 """
 
 from __future__ import annotations
@@ -19,14 +20,14 @@ from types import CodeType
 from tarl_lint.files import write_atomically
 
 FORMAT = b"tarl-code-1\n"
-KEPT = 8  # maximum number of entries per source file; each set of recorded statements needs its own entry
-# maximum number of entries in memory; a search for a repair runs many edited versions of a file
+KEPT = 8  # maximum number of entries per source file; each set of recorded statements has its own entry
+# maximum number of entries in memory; a repair search runs many edited versions of a file
 REMEMBERED = 256
 _HEADER = len(FORMAT) + len(MAGIC_NUMBER) + hashlib.sha256().digest_size
 
 
 class CodeCache:
-    """Code objects by entry name, in memory and in a directory; without a directory, in memory only."""
+    """Code objects by entry name, in memory and (if there is a directory) on disk."""
 
     def __init__(self, directory: Path | None) -> None:
         self._directory = directory
@@ -42,7 +43,7 @@ class CodeCache:
         return code
 
     def store(self, name: str, code: CodeType, *, keep: bool = True) -> None:
-        """Store code under a name from `entry_name`; with `keep=False`, in memory only."""
+        """Store code under a name from `entry_name`; with `keep=False`, only in memory."""
         self._remember(name, code)
         if keep and self._directory is not None and not sys.dont_write_bytecode:
             with contextlib.suppress(OSError):
@@ -55,7 +56,7 @@ class CodeCache:
 
 
 def entry_name(path: Path, depends_on: Iterable[object]) -> str:
-    """Return the entry name of a file's code: a digest of `depends_on`. Its items must have an unambiguous `repr`."""
+    """Return the entry name of a file's code: a digest of `depends_on`, whose items need an unambiguous `repr`."""
     digest = hashlib.sha256(repr(tuple(depends_on)).encode()).hexdigest()
     return f"{path.stem}-{_place(path)}-{digest[:32]}.pyc"
 

@@ -1,6 +1,6 @@
-"""Insert the recording function (hook) and the event list (buffer) into code objects as constants.
+"""Insert the recording function (hook) and the list of events (buffer) into code objects, as constants.
 
-If they were globals, the program could see them in `vars(module)` and `globals()`. Therefore the transform inserts
+As globals, they would be visible to the program in `vars(module)` and `globals()`. The transform therefore inserts
 marks, which compile to constants and are cached with the code. `bound` replaces the marks just before the code runs.
 """
 
@@ -11,25 +11,25 @@ from collections.abc import Callable, Mapping
 from types import CodeType
 from typing import Any
 
-Mark = bytes  # a digest, which no program contains by accident
+Mark = bytes  # a digest, which does not occur in a program by accident
 
 
 def _mark(name: str) -> Mark:
     return hashlib.sha256(f"pytest_tarl.instrumentation {name}".encode()).digest()
 
 
-# the function `hook(number, value)`, which records the number of a site and returns the value
+# `hook(number, value)` records a site's number and value, and returns the value
 HOOK = _mark("hook")
-BUFFER = _mark("buffer")  # the list to which instrumented code appends its events
-TYPE = _mark("type")  # the builtin `type`, since the program may shadow its name
+BUFFER = _mark("buffer")  # the list that instrumented code appends its events to
+TYPE = _mark("type")  # the builtin `type`, whose name the program may shadow
 FLOAT = _mark("float")
 _BUILTINS: Mapping[Mark, Any] = {TYPE: type, FLOAT: float}
 
 
 def bound(code: CodeType, hook: Callable[[int, Any], Any], buffer: list[Any] | None = None) -> CodeType:
-    """Return code that calls `hook` to record. Code instrumented with `inline` also appends to `buffer`.
+    """Return code that records by calling `hook`. Code instrumented with `inline` also appends to `buffer`.
 
-    Both must be hashable, since code objects are used as keys.
+    Both must be hashable, because code objects are used as keys.
     """
     return _replaced(code, {**_BUILTINS, HOOK: hook, BUFFER: buffer})
 

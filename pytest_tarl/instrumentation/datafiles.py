@@ -17,13 +17,13 @@ _SUFFIXES = (".yaml", ".yml", ".json", ".toml", ".xml", ".launch", ".cfg", ".lau
 
 
 def is_data(path: Path) -> bool:
-    """Return whether a file is a data file, not Python code."""
+    """Return whether a file is a data file and not Python code."""
     return path.name.endswith(_SUFFIXES)
 
 
 @contextmanager
 def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
-    """Within the context, reading one of these files returns its replacement text; the files on disk do not change."""
+    """Make reads of these files return their replacement texts; the files on disk stay unchanged."""
     if not overlay:
         yield
         return
@@ -32,7 +32,7 @@ def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
     with ExitStack() as patches:
         patches.enter_context(patch.object(builtins, "open", stand_in))
         patches.enter_context(patch.object(io, "open", stand_in))
-        accessor = getattr(pathlib, "_NormalAccessor", None)  # pathlib of Python 3.10 stores io.open here
+        accessor = getattr(pathlib, "_NormalAccessor", None)  # in Python 3.10, pathlib stores io.open here
         if accessor is not None and hasattr(accessor, "open"):
             patches.enter_context(patch.object(accessor, "open", staticmethod(stand_in)))
         yield

@@ -1,4 +1,4 @@
-"""The event lists to which instrumented code appends. Code objects hold them as constants."""
+"""The lists that instrumented code appends its events to; code objects contain them as constants."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any
 
 
 class Entries(list[Any]):
-    """Events of a single-threaded program.
+    """The events of a single-threaded program.
 
-    The class inherits the methods of `list`, which CPython calls without a frame.
+    Its methods are those of `list`, which CPython calls without a frame.
 
-    Code objects are compared, hashed, printed and pickled together with their constants. Therefore this list is equal
-    only to itself, has a short `repr`, and its unpickled copy in another process records nothing.
+    Code objects are compared, hashed, printed and pickled together with their constants. This list is therefore equal
+    only to itself and has a short `repr`. Unpickled in another process, it records nothing.
     """
 
     __slots__ = ("own",)
@@ -20,7 +20,7 @@ class Entries(list[Any]):
 
     def __init__(self, own: Callable[[], list[Any]]) -> None:
         super().__init__()
-        self.own = own  # returns the running thread's entries
+        self.own = own  # returns the entries of the running thread
 
     def __eq__(self, other: object) -> bool:
         """Compare by identity."""
@@ -40,16 +40,16 @@ class Entries(list[Any]):
 
 
 class SharedEntries(Entries):
-    """Events of a multi-threaded program: events are appended to the list of the thread that runs.
+    """The events of a multi-threaded program; each thread appends to its own list.
 
-    Assigning `__class__` converts an `Entries` list to this class, so code that refers to the list remains valid.
+    An `Entries` list is converted by assigning to `__class__`, so code that refers to it stays valid.
     """
 
     __slots__ = ()
     __hash__ = object.__hash__
 
     def append(self, entry: object, /) -> None:
-        """Append half an event: a site number or a value."""
+        """Append a site number or a value, which is half an event."""
         list.append(self.own(), entry)
 
     def extend(self, entries: Iterable[object], /) -> None:
@@ -58,12 +58,12 @@ class SharedEntries(Entries):
 
 
 class Unheard:
-    """An event list that drops all events, for a process that does not record."""
+    """A list that drops all events, for a process that does not record."""
 
     __slots__ = ()
 
     def append(self, entry: object, /) -> None:
-        """Drop half an event."""
+        """Drop a site number or a value."""
 
     def extend(self, entries: Iterable[object], /) -> None:
         """Drop several events."""

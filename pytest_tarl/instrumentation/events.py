@@ -19,7 +19,7 @@ Pairs = tuple[Ints, Floats, Starts]
 def paired(entries: list[Any]) -> Pairs:
     """Split `[site, value, site, value, …]` into site, value and start index, each of shape (events,).
 
-    If a signal handler raises an exception (a timeout, Ctrl-C), a site may lack its value. Drop such incomplete events.
+    If a signal handler raises (a timeout, Ctrl-C), a site may lack its value. Such incomplete events are dropped.
     """
     if len(entries) % 2 == 0 and set(map(type, entries[1::2])) <= {float}:
         even: Starts = np.arange(0, len(entries), 2)
@@ -30,7 +30,7 @@ def paired(entries: list[Any]) -> Pairs:
 
 
 def joined(parts: Sequence[Pairs]) -> Pairs:
-    """Concatenate pieces in order; each result has shape (events,)."""
+    """Concatenate the pieces in order; each result has shape (events,)."""
     if len(parts) == 1:
         return parts[0]
     site, flow, starts = zip(*parts, strict=True)
@@ -43,11 +43,11 @@ def sizes(flow: Floats) -> Floats:
 
 
 def limited(values: Floats) -> Floats:
-    """Return the values with their signs, limited to ±LIMIT; infinity and NaN become 0. Both have shape (events,)."""
+    """Return the signed values, limited to ±LIMIT, with infinity and NaN as 0; both have shape (events,)."""
     return np.where(np.isfinite(values), np.clip(values, -LIMIT, LIMIT), 0.0)
 
 
 def _whole(entries: list[Any]) -> list[int]:
-    """Return the start indices of complete events: a site (int) followed by a value (float)."""
+    """Return the start of every complete event: a site (int) followed by a value (float)."""
     pairs = enumerate(pairwise(entries))
     return [start for start, (site, value) in pairs if type(site) is int and type(value) is float]

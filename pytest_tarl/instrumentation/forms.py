@@ -1,7 +1,7 @@
-"""Build the ast nodes that record values, and set their source positions.
+"""Build the ast nodes that record values, with source positions.
 
-A new node gets the position of the original code that runs at the same moment. Therefore, line events, tracebacks and
-the carets in them are the same as in the original program.
+A new node gets the position of the original code that runs at that moment. Line events, tracebacks and their carets are
+therefore the same as in the original program.
 """
 
 from __future__ import annotations
@@ -55,32 +55,31 @@ def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
 
 
 def start_of(node: ast.expr | ast.stmt) -> Where:
-    """Return the start of the part of `node` that runs first, as a range of length 0.
+    """Return the start of the part of `node` that runs first, as an empty range.
 
-    The length must be 0: if the range of a method call spans several lines, CPython places the call at its end.
+    The range must be empty: if a method call spans several lines, CPython places the call at the end of its range.
     """
     return collapsed(where(first_evaluated(node) if isinstance(node, ast.expr) else node))
 
 
 def collapsed(at: Where) -> Where:
-    """Return the range of length 0 at the start of a range."""
+    """Return the empty range at the start of a range."""
     line, column = at["lineno"], at["col_offset"]
     return Where(lineno=line, col_offset=column, end_lineno=line, end_col_offset=column)
 
 
 def end_of(node: ast.expr, then: Where) -> Where:
-    """Return a position for new code that runs after an expression and before the code at `then`.
+    """Return a position for new code that runs between an expression and the code at `then`.
 
-    If the branches of an expression are on several lines, the expression has no single last line; then the result is
-    `then`. (Code without a line number is no alternative, because CPython 3.13.0 copies such blocks and then runs both
-    copies.)
+    If the branches of an expression are on several lines, no single line is its last; the result is then `then`. (Code
+    without a line number is not an option: CPython 3.13.0 copies such blocks and then runs both copies.)
     """
     several = node.end_lineno != node.lineno
     return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
 
 
 def first_evaluated(node: ast.expr) -> ast.expr:
-    """Return the part of an expression that runs first, where a debugger stops."""
+    """Return the part of an expression that runs first, where a debugger would stop."""
     while True:
         if INLINED_COMPREHENSIONS and isinstance(node, (ast.ListComp, ast.SetComp, ast.DictComp)):
             node = node.generators[0].iter
@@ -94,7 +93,7 @@ def first_evaluated(node: ast.expr) -> ast.expr:
 
 
 def recorded(value: ast.expr, number: int, then: Where | None = None) -> ast.Call:
-    """Build the expression `hook(number, value)`, which returns `value`; the code at `then` uses the result."""
+    """Build `hook(number, value)`, which returns `value`; the code at `then` uses the result."""
     start = start_of(value)
     return ast.Call(
         func=_marked(HOOK, start),
@@ -116,7 +115,7 @@ def note(name: str, number: int, at: Where, *, inline: bool) -> ast.stmt:
 
 
 def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list[ast.stmt]:
-    """Build the statements that record a value known in advance: a boolean, or 0."""
+    """Build the statements that record a value known in advance: a boolean or 0."""
     constant = ast.Constant(value, **at)
     if inline:
         return _appended(constant, number, at)
@@ -124,7 +123,7 @@ def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list
 
 
 def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
-    """Build one statement that records several names that hold floats, with their site numbers."""
+    """Build one statement that records several names of floats, with their site numbers."""
     entries: list[ast.expr] = []
     for name, number in events:
         entries += [ast.Constant(number, **at), ast.Name(name, ast.Load(), **at)]
@@ -133,13 +132,13 @@ def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
 
 
 def all_floats(inputs: Iterable[str], at: Where) -> ast.expr:
-    """Build the condition that every name holds a value whose class is exactly `float`."""
+    """Build the condition that every name has a value of the exact class `float`."""
     tests: list[ast.expr] = [_is_float(name, at) for name in inputs]
     return tests[0] if len(tests) == 1 else ast.BoolOp(ast.And(), tests, **at)
 
 
 def truth(test: ast.expr) -> ast.expr:
-    """Build an expression for the truth value of a condition; as in a jump, each operand is evaluated once."""
+    """Build an expression for the truth value of a condition, which evaluates each operand once, as a jump does."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         return test
     at = where(test)
@@ -147,9 +146,9 @@ def truth(test: ast.expr) -> ast.expr:
 
 
 def reached(call: ast.Call, number: int) -> ast.Call:
-    """Build a call that records 0 after its arguments are evaluated and before the function runs.
+    """Build a call that records 0 after its arguments are evaluated, but before the function runs.
 
-    A publish call can run other nodes and the world. An event recorded after it could belong to a later step.
+    A publish call can run other nodes and the world, so an event recorded after it could belong to a later step.
     """
     if call.keywords:
         last = call.keywords[-1]
@@ -190,7 +189,7 @@ def _appended(value: ast.expr, number: int, at: Where) -> list[ast.stmt]:
 
 
 def _append(entry: ast.expr, at: Where) -> ast.stmt:
-    # CPython 3.11 and later have a fast instruction for a method call on a list, as in this form.
+    # in this form, CPython 3.11 and later have a fast instruction for a method call on a list
     method = ast.Attribute(_marked(BUFFER, at), "append", ast.Load(), **at)
     return ast.Expr(ast.Call(method, [entry], [], **at), **at)
 

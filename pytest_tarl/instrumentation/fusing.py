@@ -1,9 +1,9 @@
-"""Record sequences ("runs") of plain arithmetic on local floats with a single call.
+"""Record sequences ("runs") of plain arithmetic on local floats with one call.
 
-Suppose that all names that a run reads hold floats when it begins. Then its statements cannot fail, call no code of the
-program, and produce only floats. One call at the end of the run can then record all its events, with the same result at
-lower cost. Types are known only at run time. Therefore, the instrumented program contains each run twice: one copy for
-floats, and one for other types, which records after each statement.
+If all names that a run reads hold floats at its start, its statements cannot fail, call no code of the program, and
+produce only floats. A single call at its end can then record all its events, with the same result at a lower cost. As
+types are known only at run time, the instrumented program contains each run twice: a copy for floats, and a copy for
+other types that records after each statement.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pytest_tarl.instrumentation.blocks import Function, parameters
 
 Offset = tuple[int, int]
 
-FEWEST = 3  # minimum number of events in a run; with fewer, the type checks cost more than they save
+FEWEST = 3  # minimum number of events in a run; below it, the type checks cost more than they save
 _EXACT = 2**53  # smaller integers convert to float exactly
 _SAFE = (ast.Add, ast.Sub, ast.Mult)
 _DIVIDING = (ast.Div, ast.FloorDiv, ast.Mod)
@@ -25,7 +25,7 @@ _NOTHING: frozenset[str] = frozenset()
 
 
 class Run(ast.Interactive):
-    """A placeholder for the statements of a run, used while a function is transformed."""
+    """A placeholder for a run's statements while a function is transformed."""
 
     inputs: tuple[str, ...] = ()  # names whose values must be floats
 
@@ -40,7 +40,7 @@ class _Open:
 
 
 def gather(function: Function, sites: Collection[Offset]) -> None:
-    """Replace every run with at least FEWEST events in a function by a `Run`; leave nested functions unchanged."""
+    """Replace each run with at least FEWEST events by a `Run`, except in nested functions."""
     _Gathering(function, sites).block(function.body, {one.arg for one in parameters(function.args)})
 
 
@@ -52,7 +52,7 @@ def target_of(statement: ast.stmt) -> ast.Name:
 
 
 class _Gathering:
-    """One pass over a function that tracks which names are certainly bound."""
+    """One pass over a function that tracks which names are certain to be bound."""
 
     def __init__(self, function: Function, sites: Collection[Offset]) -> None:
         self._sites = sites
@@ -73,7 +73,7 @@ class _Gathering:
         statements[:] = [*result, *self._closed(run)]  # type: ignore[list-item]  # a Run is replaced at once
 
     def _grows(self, run: _Open, statement: ast.stmt, bound: set[str]) -> bool:
-        """Extend the open run by the statement if it fits; return whether it does."""
+        """Add the statement to the open run if it fits; return whether it does."""
         reads = _arithmetic(statement)
         if reads is None or not reads <= (bound | run.made) - self._unsure:
             return False
@@ -104,7 +104,7 @@ class _Gathering:
 
 
 def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
-    """Return the names that a statement reads, or None if it may assign a non-float when all of them hold floats."""
+    """Return the names a statement reads; None if it may assign a non-float although they all hold floats."""
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -114,7 +114,7 @@ def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
 
 
 def _float(node: ast.expr) -> frozenset[str] | None:
-    """Return the names in an expression, or None if it may yield a non-float when all of them hold floats."""
+    """Return the names in an expression; None if its value may be a non-float although they all hold floats."""
     if isinstance(node, ast.Name):
         return frozenset((node.id,))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
@@ -135,12 +135,12 @@ def _whole(node: ast.expr) -> bool:
 
 
 def _divides(node: ast.expr) -> bool:
-    """Return whether an expression is a nonzero constant, so that division by it cannot fail."""
+    """Return whether an expression is a nonzero constant, so that dividing by it cannot fail."""
     return isinstance(node, ast.Constant) and bool(node.value) and (_whole(node) or _float(node) is not None)
 
 
 def _given(statement: ast.stmt) -> set[str]:
-    """Return the names that a simple statement certainly binds."""
+    """Return the names that a simple statement is certain to bind."""
     if isinstance(statement, ast.Assign):
         return _stored(statement.targets)
     given = isinstance(statement, ast.AugAssign) or getattr(statement, "value", None) is not None
@@ -170,7 +170,7 @@ def _stored(targets: Iterable[ast.expr]) -> set[str]:
 
 
 def _unsure(function: Function) -> Iterable[str]:
-    """Yield the names that may be unbound, or that other scopes may assign."""
+    """Yield the names that may be unbound, or assigned by other scopes."""
     for node in ast.walk(function):
         if isinstance(node, (ast.Global, ast.Nonlocal)):
             yield from node.names

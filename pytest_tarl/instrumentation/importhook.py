@@ -1,4 +1,4 @@
-"""Import node files: instrument them, apply candidate repairs, and re-execute them in each episode.
+"""Import node files: instrument them, apply candidate repairs, and execute them again in each episode.
 
 This is the only file that touches `sys.meta_path`.
 """
@@ -40,16 +40,16 @@ _OURS = frozenset({"pytest_tarl", "tarl_lint"})
 
 
 class AlreadyImportedWarning(UserWarning):
-    """A node file was imported before the episode began, so it runs without instrumentation."""
+    """A node file was imported before the episode, so it runs without instrumentation."""
 
 
 class NodeImports:
-    """Compile and execute a node and the modules that it imports, for one episode.
+    """Compile and execute a node, with the modules that it imports, for one episode.
 
-    `plan` holds the sites of each file. `overlay` maps files to replacement texts, in which sites keep their lines
-    where possible. Inside its `with` block, an object of this class handles the imports of all files in both mappings.
-    At the end of the block, it removes the project modules that a node imported. `bind` (see `Recorder.bind`) gives
-    code its hook and its buffer; without `bind`, code only gets `hook`.
+    `plan` has the sites of each file. `overlay` maps files to replacement texts, in which sites keep their lines where
+    possible. Inside a `with` block, this object handles the imports of all files in both; at its end, it removes the
+    project modules that a node imported. `bind` (see `Recorder.bind`) gives code its hook and its buffer; without it,
+    code gets only `hook`.
     """
 
     def __init__(
@@ -70,15 +70,15 @@ class NodeImports:
         self._bind = bind or partial(bound, hook=hook)
         self._tails = {_tail(path) for path in self._code.files}
         self._executed: set[Path] = set()
-        self._imported: set[str] = set()  # names of the modules of this episode
+        self._imported: set[str] = set()  # modules of this episode
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
-        self._before: set[str] = set()  # names of the modules that were imported before the episode
-        # edited files of which the text before the edit was executed; set on exit
+        self._before: set[str] = set()  # modules that were imported before the episode
+        # edited files whose text before the edit was executed; set on exit
         self.older: tuple[Path, ...] = ()
 
     def __enter__(self) -> NodeImports:
-        """Start to handle imports."""
+        """Start handling imports."""
         early = self._early()
         self._before = set(sys.modules)
         self._open.callback(self._look_for_older, early)
@@ -97,11 +97,11 @@ class NodeImports:
 
     @property
     def unrecorded(self) -> Mapping[Path, tuple[Position, ...]]:
-        """Return, by file, the positions of sites at which no statement could be recorded."""
+        """Return, by file, the positions of sites at which nothing could be recorded."""
         return self._code.unrecorded
 
     def separate(self) -> SeparateModules:
-        """Return an object that gives every program its own copies of the project's modules."""
+        """Return an object that gives each program its own copies of the project's modules."""
         belonging: dict[str, tuple[ModuleType, bool]] = {}
 
         def own() -> Iterator[str]:
@@ -118,12 +118,12 @@ class NodeImports:
         return SeparateModules(own)
 
     def compile_file(self, path: Path) -> CodeType:
-        """Compile a file with recording at its sites. Raise SyntaxError or OSError, as an import does."""
+        """Compile a file that records its sites. Raise SyntaxError or OSError, as an import does."""
         code = self._code.compile(path)
         return self._bind(code) if self._code.recorded(path.resolve()) else code
 
     def run(self, path: Path, entry: str | None = None) -> None:
-        """Run a node's file as a script, or call the function that its entry point names."""
+        """Run a node's file as a script, or call the function named by its entry point."""
         __tracebackhide__ = True
         if entry is None:
             self.run_script(path)
@@ -131,7 +131,7 @@ class NodeImports:
             self.run_entry(path, entry)
 
     def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
-        """Execute a file as `python path` does, in a new module that is registered in `sys.modules` as `name`.
+        """Execute a file as `python path` does, in a new module that `sys.modules` lists as `name`.
 
         Set `__package__` as `python -m` does, so that relative imports work.
         """
@@ -154,7 +154,7 @@ class NodeImports:
             and (path.parent / f"{package.partition('.')[0]}.py").is_file()
             and _imports_relatively(path)
         ):
-            # import the package first, because a module of the same name beside the script would hide it
+            # import the package first: a module of the same name beside the script would hide it
             import_module(package)
         on_search_path(path.parent)
         self.prepare(module, path)
@@ -164,7 +164,7 @@ class NodeImports:
     def run_entry(self, path: Path, entry: str) -> None:
         """Import a file under its own name and call its function `entry`, as a `console_scripts` entry point does.
 
-        Raise SystemExit with the function's return value if that is true.
+        Raise SystemExit with the function's return value, if that is true.
         """
         __tracebackhide__ = True
         root, name = importable(path)
@@ -183,7 +183,7 @@ class NodeImports:
         self._namespaces.append(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Find a file of the plan or the overlay; for any other import, only note whether a node requested it."""
+        """Find a file of the plan or the overlay; for any other import, only note whether a node asked for it."""
         if fullname.rpartition(".")[2] not in self._tails:
             if fullname.partition(".")[0] not in _OURS and self._asked_by_node(sys._getframe(1)):
                 self._imported.add(fullname)
@@ -221,12 +221,12 @@ class NodeImports:
         return False
 
     def _early(self) -> dict[Path, str]:
-        """Return the files of the plan and the overlay that are already imported, with their module names."""
+        """Return the files of the plan and the overlay that were already imported, with their module names."""
         early: dict[Path, str] = {}
         endings = tuple(self._tails)
         names = "\n".join(sys.modules) + "\n"
         if not any(f"{ending}\n" in names for ending in endings):
-            return early  # this check is ten times faster than the following check of every name
+            return early  # ten times faster than checking every name, as below
         for name in [name for name in sys.modules if name.endswith(endings)]:
             file = (
                 sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None
@@ -247,17 +247,17 @@ class NodeImports:
             )
 
     def _look_for_older(self, early: Mapping[Path, str]) -> None:
-        """Collect the edited files whose old text ran, because they were in use but were not executed again."""
+        """Collect the edited files whose old text ran: they were in use, but were not executed again."""
         missed = {path.resolve() for path in self._overlay} - self._executed
         if missed:
             self.older = tuple(sorted({*outlived(missed), *(missed & early.keys())}))
 
     def _forget_modules(self) -> None:
-        """Remove the project's modules from `sys.modules`, and modules imported in this episode that refer to them."""
+        """Remove from `sys.modules` the project's modules, and modules of this episode that refer to them."""
         own = [name for name in self._imported if name in sys.modules and self._belongs(sys.modules[name])]
         new = sys.modules.keys() - self._before - set(own) if own else set()
         others = holders((sys.modules[name] for name in own), sorted(new))
-        for name in sorted((*own, *others), reverse=True):  # removes submodules before their packages
+        for name in sorted((*own, *others), reverse=True):  # submodules before their packages
             module = sys.modules.pop(name)
             package, _, tail = name.rpartition(".")
             outer = sys.modules.get(package)
@@ -265,7 +265,7 @@ class NodeImports:
                 delattr(outer, tail)
 
     def _belongs(self, module: ModuleType) -> bool:
-        """Return whether a module's source file lies in the workspace of the node or of the tests."""
+        """Return whether a module's source file is in the workspace of the node or the tests."""
         spec = module.__dict__.get("__spec__")
         if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
             return False
@@ -277,13 +277,13 @@ class NodeImports:
 
 
 def _imports_relatively(path: Path) -> bool:
-    """Return whether a file imports from its own package by dots."""
+    """Return whether a file has relative imports."""
     tree = ast.parse(path.read_bytes())
     return any(isinstance(node, ast.ImportFrom) and node.level > 0 for node in ast.walk(tree))
 
 
 class NodeLoader(SourceFileLoader):
-    """A loader that works like Python's but loads instrumented code."""
+    """A loader like Python's that loads instrumented code."""
 
     def __init__(self, fullname: str, path: str, imports: NodeImports) -> None:
         super().__init__(fullname, path)
@@ -311,7 +311,7 @@ def _resolved(root: Path) -> Path:
 
 @lru_cache(maxsize=8)
 def code_cache(root: Path) -> CodeCache:
-    """Return the code cache of a project, shared by all its episodes."""
+    """Return a project's code cache, which all its episodes share."""
     return CodeCache(root / ".tarl" / "cache")
 
 

@@ -1,4 +1,4 @@
-"""Transform an ast so that it records values. The instrumented program has the same behaviour as the original."""
+"""Transform an ast so that the program records values, and otherwise behaves as before."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from pytest_tarl.instrumentation.magnitude import magnitude
 Offset = tuple[int, int]  # line (from 1) and column in UTF-8 bytes (from 0), as in `ast`
 Scope = Literal["module", "class", "function"]
 
-# these statements only declare names or do nothing, so there is no value to record
+# these statements only declare names or do nothing, so they have no value to record
 _SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
 Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
 Loop = TypeVar("Loop", ast.For, ast.AsyncFor)
@@ -48,13 +48,18 @@ def instrument(
     inline: bool = False,
     placed: set[Offset] | None = None,
 ) -> ast.Module:
-    """Return the module with recording at every statement or lambda body that starts at a position in `sites`.
+    """Return the module, with recording of each statement or lambda body that starts at a position in `sites`.
 
     Compile the result with `compiled`, and insert a hook and a buffer with `constants.bound`. A site records the value
-    of its statement, with these exceptions. Sites in `publishes` and calls of methods named publish record 0. A
-    condition records 1 or 0. The `def` of a function records its message parameter. A loop records its target in each
-    iteration. With `inline`, code appends plain floats to the buffer without a call. This function modifies `tree` and
-    adds recorded positions to `placed`.
+    of its statement, except:
+
+    - Sites in `publishes` and calls of methods named publish record 0.
+    - A condition records 1 or 0.
+    - The `def` of a function records its message parameter.
+    - A loop records its target in each iteration.
+
+    With `inline`, code appends plain floats to the buffer without a call. This function modifies `tree` and adds the
+    positions that it records to `placed`.
     """
     found: set[Offset] = set() if placed is None else placed
     changed = _Recording(sites, frozenset(publishes), found, inline=inline).visit(tree)
@@ -63,7 +68,7 @@ def instrument(
 
 
 def compiled(tree: ast.Module, path: str) -> CodeType:
-    """Compile an instrumented module. Ignore the compiler's warnings, since they concern the inserted marks."""
+    """Compile an instrumented module, without compiler warnings, which would be about the inserted marks."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code: CodeType = compile(tree, path, "exec", dont_inherit=True)
@@ -114,7 +119,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
-        """Transform a function; a site at one of its parameters is recorded at the function's entry."""
+        """Transform a function; sites at its parameters are recorded at its entry."""
         return self._function(node)
 
     def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AsyncFunctionDef:
@@ -133,7 +138,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_Run(self, node: Run) -> ast.If:
-        """Record a run of arithmetic with one call if its inputs are floats, or else each statement separately."""
+        """Record a run of arithmetic with one call if its inputs are floats; otherwise record each statement."""
         begins = start_of(first_evaluated_in(node.body))
         numbers = [(target_of(statement).id, self._number(statement)) for statement in node.body]
         events = [(name, number) for name, number in numbers if number is not None]
@@ -142,7 +147,7 @@ class _Recording(ast.NodeTransformer):
         return ast.If(all_floats(node.inputs, begins), fused, node.body, **begins)
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
-        """Record the body, and also the message if the site is the lambda itself."""
+        """Record the body and, if the site is the lambda itself, the message."""
         body, receives = self._number(node.body), self._number(node)
         same = (node.lineno, node.col_offset) == (node.body.lineno, node.body.col_offset)
         publish = self._publishing(node.body, body)
@@ -215,7 +220,7 @@ class _Recording(ast.NodeTransformer):
     def _record_expr(self, node: ast.Expr, number: int) -> list[ast.stmt]:
         value = node.value
         if isinstance(value, ast.Constant):
-            # there is nothing to record: a docstring, which must stay in the first place, or `...`
+            # nothing to record: `...`, or a docstring, which must stay first
             return [node]
         if isinstance(value, ast.Yield):
             if value.value is None:
@@ -228,7 +233,7 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # record after the assertion, because a wrapped condition would move the carets in the traceback of a failure
+        # record after the assertion: wrapping the condition would move the carets in the traceback of a failure
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
@@ -274,7 +279,7 @@ class _Recording(ast.NodeTransformer):
         return note_constant(value, number, at, inline=self._inline)
 
     def _rereadable(self) -> bool:
-        """Return whether reading a name again is certain to run no code, which is not so in a class body."""
+        """Return whether reading a name again is certain to run no code; False in a class body."""
         return self._scope[-1] != "class"
 
     def _before_or_around(

@@ -1,4 +1,4 @@
-"""Find the import path and module name of a node's file, and restore the interpreter after the node has run."""
+"""Find the import path and module name of a node's file; restore the interpreter after the node has run."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
-_BUILT = ("build", "install", "devel")  # folders with build output, beside the `src` of a workspace
+_BUILT = ("build", "install", "devel")  # folders of build output, beside the `src` of a workspace
 _PACKAGE = ("package.xml", "pyproject.toml", "setup.py")
 
 
 def importable(path: Path) -> tuple[Path, str]:
-    """Return the folder to import a file from, and its module name: `driver`, or `robot.driver` in a package."""
+    """Return the folder from which to import a file, and its module name (`driver`, `robot.driver`)."""
     root, parts = path.parent, [path.stem]
     while (root / "__init__.py").is_file():
         root, parts = root.parent, [root.name, *parts]
@@ -25,9 +25,12 @@ def importable(path: Path) -> tuple[Path, str]:
 def workspace(path: Path) -> Path:
     """Return the root folder of a node's project.
 
-    The root is the first of these that exists: the git repository; the folder above the `src` of a colcon or catkin
-    workspace, or else the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; the folder from which
-    the node is imported.
+    This is the first of the following that exists:
+
+    - the git repository
+    - the folder above the `src` of a colcon or catkin workspace
+    - the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`
+    - the folder from which the node is imported
     """
     file = path.resolve()
     for folder in file.parents:
@@ -40,7 +43,7 @@ def workspace(path: Path) -> Path:
 
 
 def on_search_path(*folders: Path) -> None:
-    """Put these folders at the front of the search path, in this order."""
+    """Move these folders to the front of the search path, in this order."""
     for folder in reversed(folders):
         if str(folder) not in sys.path:
             sys.path.insert(0, str(folder))
@@ -48,7 +51,7 @@ def on_search_path(*folders: Path) -> None:
 
 @contextlib.contextmanager
 def restored_interpreter() -> Iterator[None]:
-    """On exit, restore the search path and `__main__`, which a script may change."""
+    """Restore the search path and `__main__` on exit, because a script may change them."""
     path, main = list(sys.path), sys.modules["__main__"]
     try:
         yield

@@ -10,9 +10,9 @@ NaN, infinity                  0: "no measurement" (REP 117), also as a part of 
 None, text, bytes, the rest    0
 =============================  =====================================================================
 
-Values above `LIMIT` count as `LIMIT`, so that their sums and squares stay finite. To limit the cost, longer arrays and
-sequences of plain numbers are sampled at about `SAMPLE` even steps, and the norm is scaled up. In other containers,
-at most `SAMPLE` parts are visited.
+Values above `LIMIT` count as `LIMIT`, so that their sums and squares stay finite. To limit the cost, long arrays and
+long sequences of plain numbers are sampled in about `SAMPLE` even steps, and the norm is scaled up. In other
+containers, at most `SAMPLE` parts are visited.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Parts = Callable[[Any], Iterable[Any]]
 
 
 def magnitude(value: object) -> float:
-    """Return the flow value of any object: finite and at least 0. Never raise, and never modify `value`."""
+    """Return the flow value of any object, finite and at least 0. Never raise, and never change `value`."""
     if value is None or value is True or value is False or type(value) is str:
         return 1.0 if value is True else 0.0
     try:
@@ -48,7 +48,7 @@ def magnitude(value: object) -> float:
         if number is not None:
             return _size(number, value)
         return 0.0 if parts is None else _bounded(_norm(value))
-    except Exception:  # an object may raise any exception, which must not reach the program
+    except Exception:  # any exception can come from an object, and none must reach the program
         return 0.0
 
 
@@ -95,7 +95,7 @@ def _size(number: Number, value: object) -> float:
 
 
 def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
-    """Return the norm of a sequence of finite plain numbers, or None if it holds anything else."""
+    """Return the norm of a sequence of finite plain numbers, or None if it has anything else."""
     length = sequence.__len__()  # the program may have replaced `len`
     step = length // SAMPLE or 1
     sample = sequence[::step] if step > 1 else sequence
@@ -109,7 +109,7 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
 
 
 def _kind(kind: type) -> tuple[Number | None, Parts | None]:
-    """Return the functions that read a number and list the parts of a class's objects, each None if not applicable."""
+    """Return the functions that read a number and list the parts of a class's objects; None where not applicable."""
     known = _KINDS.get(id(kind))
     if known is None:
         if len(_KINDS) >= _KINDS_KEPT:
@@ -120,7 +120,7 @@ def _kind(kind: type) -> tuple[Number | None, Parts | None]:
     return known[1], known[2]
 
 
-# keyed by id, since hashing a class can run code of the program; a weak reference removes the entry with its class
+# keyed by id, because hashing a class can run code of the program; the weak reference removes the entry with its class
 _KINDS: dict[int, tuple[ref[type], Number | None, Parts | None]] = {}
 _KINDS_KEPT = 1024
 
@@ -172,10 +172,10 @@ def _numpy(value: Any) -> float:
 
 
 def _parts(kind: type) -> Parts | None:
-    """Return a function that lists the contents of a container or message, or None for other objects."""
+    """Return a function that lists the contents of a container or message; None for other objects."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
-            return container.__iter__  # not the method of a subclass, which can run any code
+            return container.__iter__  # a subclass's method could run any code
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
@@ -204,7 +204,7 @@ def _fields(kind: type) -> tuple[str, ...]:
 
 
 def _slot(kind: type, name: str) -> MemberDescriptorType | None:
-    """Return the descriptor that stores a field; it is `_name` if a property checks assignments."""
+    """Return the descriptor that stores a field; it is named `_name` if a property checks assignments."""
     found = (_attribute(kind, stored) for stored in (name, f"_{name}"))
     return next((slot for slot in found if isinstance(slot, MemberDescriptorType)), None)
 
@@ -212,7 +212,7 @@ def _slot(kind: type, name: str) -> MemberDescriptorType | None:
 def _stored(message: object, name: str) -> object:
     """Read a field without running a property."""
     kind = type(message)
-    slot = _slot(kind, name)  # look it up each time, since storing the slot would keep the class alive
+    slot = _slot(kind, name)  # looked up each time, because storing the slot would keep the class alive
     if slot is not None:
         return slot.__get__(message, kind)
     state = _attribute(kind, "__dict__")
@@ -220,7 +220,7 @@ def _stored(message: object, name: str) -> object:
     return stored.get(name, stored.get(f"_{name}"))
 
 
-# Read attributes of a class without its metaclass, because a metaclass can run code of the program.
+# reads a class's attribute without its metaclass, which can run code of the program
 _bases: Callable[[type], tuple[type, ...]] = type.__dict__["__mro__"].__get__
 _attributes: Callable[[type], Mapping[str, Any]] = type.__dict__["__dict__"].__get__
 

@@ -1,4 +1,4 @@
-"""Compile a node file, or its replacement text, with recording at its sites."""
+"""Compile a node file or its replacement text, with its sites recorded."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ class NodeCode:
         self.files = frozenset({*self._plan, *self._overlay})
 
     def edited(self, file: Path) -> bytes | None:
-        """Return the replacement text of a file (a resolved path), or None if it is unchanged."""
+        """Return the replacement text of a (resolved) file, or None if it is unchanged."""
         text = self._overlay.get(file)
         return None if text is None else text.encode()
 
     def recorded(self, file: Path) -> bool:
-        """Return whether a file (a resolved path) contains sites."""
+        """Return whether a (resolved) file has sites."""
         return bool(self._plan.get(file))
 
     def compile(self, path: Path) -> CodeType:
-        """Compile a file that records its sites. Raise SyntaxError and OSError, as an import does."""
+        """Compile a file that records its sites. Raise SyntaxError or OSError, as an import does."""
         file = path.resolve()
         data, text, positions = self._text(file)
         parts = (data, sorted(positions.items()), self._publishes, self._inline, _transform_digest())
@@ -61,7 +61,7 @@ class NodeCode:
         return code
 
     def _text(self, file: Path) -> tuple[bytes, str | None, Positions]:
-        """Return the bytes to compile, the replacement text (or None), and the sites."""
+        """Return the bytes to compile, the replacement text or None, and the sites."""
         positions = self._plan.get(file, {})
         text = self._overlay.get(file)
         if text is None:
@@ -91,7 +91,7 @@ class NodeCode:
 
 
 def _offsets(text: str, positions: Positions) -> dict[Position, Offset]:
-    """Convert columns in characters, from 1, to columns in UTF-8 bytes, from 0."""
+    """Convert columns in characters (from 1) to columns in UTF-8 bytes (from 0)."""
     lines = text.split("\n")
     offsets = {}
     for line, column in positions:

@@ -1,8 +1,8 @@
-"""Record the events of one episode. Most of the work is done at the end, to slow the node down as little as possible.
+"""Record the events of an episode. Most of the work is done at the end, to slow the node down as little as possible.
 
-A buffer is one flat list per thread, `[site, value, site, value, …]`. An event of the simulation is a new current cell,
-or the reward of a step. Each is a mark in a separate list, together with the length of every buffer at that moment.
-Marks have their own list so that each buffer has a single writer. Greenlets of one thread share its buffer.
+A buffer is a flat list per thread, `[site, value, site, value, …]`. Events of the simulation (a new current cell, or
+the reward of a step) are marks in a separate list, stored with the length of every buffer at that moment. The separate
+list ensures that each buffer has a single writer. Greenlets of a thread share its buffer.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from pytest_tarl.instrumentation.thread_starts import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 
-EXACT = 2**53  # integers below this convert to float exactly; the fast path relies on it
-MANY = 200_000  # number of entries; a longer buffer is packed into columns after a step
+EXACT = 2**53  # smaller integers convert to float exactly, as the fast path requires
+MANY = 200_000  # a buffer with more entries is packed into columns after a step
 _TOOLS = frozenset(
     {"pytest_tarl", "_pytest", "execnet", "pytest_rerunfailures", "pytest_timeout", "slipcover", "xdist"}
 )
@@ -34,16 +34,16 @@ Hook = Callable[[int, Any], Any]
 
 @dataclass
 class _Buffer:
-    """The events of one thread. `lengths[i]` is the number of its entries at mark i, including packed entries."""
+    """The events of one thread; `lengths[i]` is the number of its entries at mark i, including packed ones."""
 
     entries: list[Any] = field(default_factory=list)
     lengths: list[int] = field(default_factory=list)
     packed: list[Pairs] = field(default_factory=list)
-    gone: int = 0  # number of entries that were moved from the buffer into columns
+    gone: int = 0  # number of entries already packed into columns
 
     def pack(self) -> None:
-        """Convert the entries to columns. Call it in the buffer's own thread, or after the episode."""
-        entries = self.entries[:]  # this copy is atomic, because another thread may still append
+        """Convert the entries to columns. Call this in the buffer's own thread, or after the episode."""
+        entries = self.entries[:]  # this copy is atomic; another thread may still be appending
         self.entries.clear()
         site, flow, starts = paired(entries)
         self.packed.append((site, flow, starts + self.gone if self.gone else starts))
@@ -53,22 +53,21 @@ class _Buffer:
 class Recorder:
     """Record one episode.
 
-    `hook` can be called from any thread. `bind` gives instrumented code a faster hook and the buffer of the thread that
-    created the recorder. This buffer is for a single thread. When a second thread starts, each thread gets its own
-    entries. Each thread has its own entries from the start if `threads` is true (needed for real ROS), or if there
-    already is another thread that may run the program.
+    Any thread may call `hook`. `bind` gives instrumented code a faster hook, and the buffer of the thread that created
+    the recorder. When a second thread starts, each thread gets its own entries. They are separate from the start if
+    `threads` is true (as a real ROS requires), or if another thread already exists that may run the program.
     """
 
-    _packing = True  # whether `reward` may pack the buffer of the thread that created the recorder
+    _packing = True  # whether `reward` may pack the buffer of the creating thread
 
     def __init__(self, *, threads: bool = False) -> None:
         self._lock = threading.Lock()
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        # for each mark in the buffer, the index of the cell that became current there
+        # for each mark in the buffer, the index of the current cell from there on
         self._latched: list[int] = []
-        self._rewards: list[int] = []  # indices of the marks in the buffer at which a step ends
+        self._rewards: list[int] = []  # indices of the marks at which a step ends
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []
         self.hook: Callable[[int, T], T] = _threaded_hook(self._entries)
@@ -82,7 +81,7 @@ class Recorder:
         self._watch, self._watching = ThreadWatch(self._share), False
 
     def __reduce__(self) -> tuple[type[_Elsewhere], tuple[()]]:
-        """Pickle as `_Elsewhere`: a pickled function may refer to a recorder, but other processes record nothing."""
+        """Pickle as `_Elsewhere`: pickled functions may refer to a recorder, but other processes record nothing."""
         return _Elsewhere, ()
 
     def bind(self, code: CodeType) -> CodeType:
@@ -93,7 +92,7 @@ class Recorder:
         return bound(code, self._bound_hook, self._own.entries)
 
     def latch(self, cell: Cell | None) -> None:
-        """Set the current cell, or None when it becomes unknown."""
+        """Set the current cell; None if it is unknown."""
         with self._lock:
             self._mark(-1 if cell is None else self._cells.setdefault(cell, len(self._cells)))
 
@@ -108,7 +107,7 @@ class Recorder:
             self._own.pack()
 
     def finish(self, *, signed: bool = False) -> Trace:
-        """End the episode and return its trace; if `signed`, numbers keep their signs. Later events are dropped."""
+        """End the episode and return its trace; with `signed`, numbers keep their signs. Drop later events."""
         self._watch.end()
         parts = [self._columns(buffer, number) for number, buffer in enumerate(self._buffers)]
         columns = [np.concatenate(part) for part in zip(*parts, strict=True)]
@@ -146,17 +145,17 @@ class Recorder:
         return entries
 
     def _share(self) -> None:
-        """Make the buffer keep threads apart from now on."""
+        """Keep the threads' entries separate from now on."""
         self._single = False
         self._own.entries.__class__ = SharedEntries
 
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
-        """Return five columns of one thread's events: site, value, cell, step and thread, each of shape (events,)."""
+        """Return a thread's events as five columns: site, value, cell, step, thread; each of shape (events,)."""
         buffer.pack()
         site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
         bounds = np.concatenate(([0], before, [len(starts)]))
-        between = bounds[1:] - bounds[:-1]  # number of events before each mark, and after the last mark
+        between = bounds[1:] - bounds[:-1]  # number of events before each mark, and after the last
         cells = np.array([-1, *self._latched], np.int32)
         closing = np.zeros(len(cells), np.int32)
         closing[np.array(self._rewards, np.int64) + 1] = 1
@@ -170,20 +169,20 @@ class Recorder:
 
 
 def _alone() -> bool:
-    """Return whether all other threads belong to test tools, so that they never run code of the program."""
+    """Return whether all other threads belong to test tools, which never run the program's code."""
     return all(
         _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
     )
 
 
 def _of_tool(thread: threading.Thread) -> bool:
-    # a threading.Timer stores its function under this name
+    # threading.Timer stores its function as `function`
     runs = getattr(thread, "_target", None) or getattr(thread, "function", None)
     return str(getattr(runs, "__module__", None)).partition(".")[0] in _TOOLS
 
 
 class _Elsewhere:
-    """The replacement of a recorder in a process that does not record. `Recorder._entries` accepts it as `self`."""
+    """Takes the place of a recorder in a process that does not record. `Recorder._entries` accepts it as `self`."""
 
     __slots__ = ()
 
@@ -193,12 +192,12 @@ class _Elsewhere:
 
     @property
     def entries(self) -> list[Any]:
-        """Return a list that is discarded."""
+        """Return a list that nobody reads."""
         return []
 
 
 def _plain_hook(entries: list[Any]) -> Hook:
-    """Return the hook for a program that starts with one thread; `entries` keeps later threads apart."""
+    """Return the hook for a program that starts with one thread; `entries` separates later threads."""
     size = magnitude
 
     def hook(number: int, value: Any) -> Any:
@@ -222,7 +221,7 @@ def _plain_hook(entries: list[Any]) -> Hook:
 
 
 def _threaded_hook(own: Callable[[], list[Any]]) -> Hook:
-    """Return the hook for any thread."""
+    """Return the hook for programs with several threads."""
     size, extend = magnitude, list.extend
 
     def hook(number: int, value: Any) -> Any:

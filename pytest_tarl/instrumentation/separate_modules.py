@@ -1,7 +1,7 @@
-"""Give each program its own copies of the project's modules, as if it were a separate process.
+"""Give each program its own copies of the project's modules, as separate processes would have.
 
-Otherwise, two nodes in one interpreter would share a module such as `utils`: the second node would get the module of
-the first. Two nodes of the same program would share the globals of its modules.
+Otherwise two nodes in one interpreter would share modules: the second node's `import utils` would return the first
+node's `utils`. Two nodes of the same program would share the globals of its modules.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class SeparateModules:
         self._path = list(sys.path)
 
     def enter(self, program: object) -> None:
-        """Install the modules and search path of a program, and put away those of the program that ran before."""
+        """Install a program's modules and search path, and put away those of the previous program."""
         if program is self._running:
             return
         self._modules[self._running] = {name: sys.modules.pop(name) for name in tuple(self._own())}

@@ -1,4 +1,4 @@
-"""Number the sites (statements to record) of an analysis, in one taint list per pair of source and sink topic."""
+"""Number the sites (statements to record) of an analysis, with one taint list per pair of source and sink topic."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from pytest_tarl.model import SitePlace, TaintList
 if TYPE_CHECKING:
     from tarl_lint.model import Flow, SiteId, Step
 
-Position = tuple[int, int]  # line and column of a statement's first character, each from 1
-Positions = Mapping[Position, int]  # position → global number of the site
+Position = tuple[int, int]  # line and column of a statement's first character, both from 1
+Positions = Mapping[Position, int]  # position → global site number
 
 
 class HasFlows(Protocol):
@@ -32,10 +32,9 @@ class HasFlows(Protocol):
 class Plan:
     """The sites to record.
 
-    A global site number is an index into `places`; `members[i]` holds the numbers of the sites in `lists[i]`.
-    `positions` holds the sites of each path, named as in the analysis; columns count characters. `forwarded` are the
-    indices of the lists whose callback is a publish method of ROS itself, so that no statement runs when a message
-    passes.
+    A global site number is an index into `places`; `members[i]` has the numbers of the sites in `lists[i]`. `positions`
+    has the sites of each path, named as in the analysis; columns count characters. `forwarded` has the indices of the
+    lists whose callback is ROS's own publish method, so that no statement runs when a message passes through.
     """
 
     lists: tuple[TaintList, ...]
@@ -46,12 +45,12 @@ class Plan:
 
     @property
     def publishes(self) -> frozenset[int]:
-        """Return the sites without a value, for which only the fact that they are reached is recorded."""
+        """Return the sites without a value; only the fact that they are reached is recorded."""
         return frozenset(number for number, place in enumerate(self.places) if place.role == "publish")
 
 
 def plan(analysis: HasFlows) -> Plan:
-    """Number the data and control steps of all flows; skip context steps, which are never instrumented."""
+    """Number the data and control steps of all flows; context steps are never instrumented."""
     grouped: dict[tuple[str, str], list[Flow]] = defaultdict(list)
     for flow in analysis.flows:
         for pair in product(_topics(flow.source), _topics(flow.sink)):
@@ -72,14 +71,15 @@ def plan(analysis: HasFlows) -> Plan:
 
 
 def _is_forwarded(flow: Flow) -> bool:
-    """Return whether the registration of the subscription is also the publish call: `Subscriber(…, pub.publish)`."""
+    """Return whether a subscription publishes directly, as in `Subscriber(…, pub.publish)`."""
     return flow.sink.span in (flow.source.span, *flow.source.registered)
 
 
 def relocate(positions: Positions, before: str, after: str) -> dict[Position, int]:
     """Find the positions of the sites of `before` in an edited text.
 
-    A block of changed lines keeps its sites if its number of lines is unchanged. Sites on removed lines are dropped.
+    A block of changed lines keeps its sites if it still has the same number of lines. Sites on removed lines are
+    dropped.
     """
     lines: dict[int, int] = {}
     matcher = difflib.SequenceMatcher(None, before.split("\n"), after.split("\n"), autojunk=False)
@@ -102,7 +102,7 @@ def _scored(flow: Flow) -> list[Step]:
 
 
 def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
-    """Merge taint lists, keeping the order of each list as far as the lists agree; otherwise, order by position."""
+    """Merge taint lists, keeping the order of each as far as they agree, and sorting by position otherwise."""
     best: dict[SiteId, Step] = {}
     followers: dict[SiteId, set[SiteId]] = defaultdict(set)
     waiting: dict[SiteId, int] = defaultdict(int)
@@ -121,7 +121,7 @@ def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
 def _topological(
     steps: Mapping[SiteId, Step], followers: Mapping[SiteId, set[SiteId]], waiting: dict[SiteId, int]
 ) -> Iterator[Step]:
-    """Yield steps in topological order; enter a cycle at its first line."""
+    """Yield steps in topological order; enter each cycle at its first line."""
     left = dict(sorted(steps.items(), key=lambda item: item[1].span))
     ready = [(step.span, site) for site, step in left.items() if not waiting[site]]
     heapq.heapify(ready)
@@ -137,7 +137,7 @@ def _topological(
 
 
 def _numbering(steps: Iterable[Step]) -> dict[SiteId, Step]:
-    """Return one step per site, in order of file and position; a data step takes precedence over a control step."""
+    """Return one step per site, ordered by file and position; a data step wins over a control step."""
     distinct: dict[SiteId, Step] = {}
     for step in steps:
         if step.site not in distinct or step.dependence == "data":

@@ -1,4 +1,4 @@
-"""Call a function before a new thread of a program runs its first line."""
+"""Call a function before a program's new thread runs its first line."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-# threading.setprofile is unsuitable. CPython 3.11 repeats the first instruction of a profiled thread while other
-# threads wait for the interpreter lock, so threads that start at the same time never proceed.
+# threading.setprofile is no alternative: CPython 3.11 repeats the first instruction of a profiled thread while other
+# threads wait for the interpreter lock, so threads that start at the same time would never proceed.
 _STARTERS = (
     (_thread, "start_new_thread"),
     (_thread, "start_joinable_thread"),  # Python ≥ 3.13
@@ -21,7 +21,7 @@ _STARTERS = (
 class ThreadWatch:
     """Call `heard` before a thread starts through `threading` or `_thread`.
 
-    Threads that extension modules start by other means are not detected.
+    Threads that extension modules start in other ways are not detected.
     """
 
     def __init__(self, heard: Callable[[], None]) -> None:
@@ -29,7 +29,7 @@ class ThreadWatch:
         self._replaced: list[tuple[ModuleType, str, Any, Any]] = []
 
     def begin(self) -> None:
-        """Replace the functions that start threads in both modules."""
+        """Replace the functions in both modules that start threads."""
         for module, name in _STARTERS:
             original = getattr(module, name, None)
             if original is not None:
@@ -38,7 +38,7 @@ class ThreadWatch:
                 self._replaced.append((module, name, original, telling))
 
     def end(self) -> None:
-        """Restore both modules unless other code has changed them in the meantime."""
+        """Restore both modules, unless other code has changed them since."""
         for module, name, original, telling in self._replaced:
             if getattr(module, name) is telling:
                 setattr(module, name, original)

@@ -1,4 +1,4 @@
-"""The recorded columns of one episode."""
+"""The recorded columns of an episode."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ Floats = NDArray[np.float64]
 class Trace:
     """Events and simulation steps of one episode.
 
-    `cells` holds the distinct cells in order of first use. `event_cell` and `step_cell` are indices into it, or -1
-    before the first message. Event columns have shape (events,), step columns (steps,). Events are sorted by step and
+    `cells` has the distinct cells in order of first use; `event_cell` and `step_cell` are indices into it, or -1 before
+    the first message. Columns of events have shape (events,), columns of steps (steps,). Events are sorted by step and
     then by thread, so the order of events in different threads is lost. Events after the last reward belong to the last
     step. `thread` is None if one thread recorded everything.
     """
 
     cells: tuple[Cell, ...]
     site: Ints
-    flow: Floats  # finite; at least 0 unless the episode was planned with `signed`
+    flow: Floats  # finite; never negative unless the episode was planned with `signed`
     event_cell: Ints
     event_step: Ints
-    step_cell: Ints  # the cell of each step, at the time of its reward
+    step_cell: Ints  # each step's cell at the time of its reward
     reward: Floats
     parts: Mapping[str, Floats]
     thread: Ints | None = None
 
     @property
     def steps(self) -> int:
-        """Return the number of rewarded simulation steps."""
+        """Return the number of steps with a reward."""
         return len(self.reward)
