@@ -42,7 +42,7 @@ HINTS = (
     (r"(true|false)\b", "booleans are 1 and -1, so write (delivered > 0)"),
     (r"=[^=]", "write == to compare two values"),
     (r"[&|]", "write and, or"),
-)  # first token that cannot be parsed → hint for the user
+)  # first token that the parser rejects → hint for the user
 MINUS = "write (0 - gap) for -gap"
 _PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, ")
 
@@ -52,16 +52,16 @@ class ReadingError(Exception):
 
 
 class _Strict(ErrorListener):  # type: ignore[misc]
-    """Raise on a syntax error; antlr would print it to the terminal and continue."""
+    """Raise on syntax errors, which antlr would only print."""
 
     def syntaxError(self, *told: Any) -> None:  # noqa: N802
-        """Raise ReadingError for characters that are not in the grammar; the fifth argument is antlr's message."""
+        """Raise ReadingError for characters outside the grammar; the fifth argument is antlr's message."""
         msg: str = told[4]
         raise ReadingError(f"{msg.partition(': ')[2]} has no meaning in a formula")
 
 
 def words(text: str) -> tuple[list[str], list[str]]:
-    """Return the names in a string and its other tokens. Raise ReadingError for characters not in the grammar."""
+    """Return the names and the other tokens in a string. Raise ReadingError for characters outside the grammar."""
     lexer = LtlLexer(InputStream(text))
     lexer.removeErrorListeners()
     lexer.addErrorListener(_Strict())
@@ -71,7 +71,7 @@ def words(text: str) -> tuple[list[str], list[str]]:
 
 
 def tree(text: str, names: Sequence[str]) -> Any:
-    """Parse a formula over the given names into a tree of rtamt's nodes. Raise ReadingError."""
+    """Parse a formula over these names into a tree of rtamt's nodes. Raise ReadingError."""
     ast = StlAst()
     for name in names:
         ast.declare_var(name, "float")
@@ -80,7 +80,7 @@ def tree(text: str, names: Sequence[str]) -> Any:
         ast.parse()
     except RTAMTException as problem:
         raise ReadingError(_reason(text, str(problem))) from None
-    except AttributeError:  # rtamt raises this for `unless` without bounds
+    except AttributeError:  # raised by rtamt for `unless` without bounds
         raise ReadingError("unless needs bounds, such as unless[0:10]") from None
     except (ValueError, KeyError, RecursionError) as problem:
         raise ReadingError(f"{problem}".strip("'") or "it is nested too deeply") from None
@@ -97,7 +97,7 @@ def nodes(node: Any) -> Iterator[Any]:
 
 
 def atoms(node: Any) -> Iterator[Any]:
-    """Yield the atoms of a formula: the nodes that are not connectives, such as comparisons."""
+    """Yield a formula's atoms: the nodes that are not connectives, such as comparisons."""
     if not isinstance(node, CONNECTIVES):
         yield node
         return
@@ -153,7 +153,7 @@ def _check(node: Any) -> None:
 
 
 def _numeric(node: Any) -> Any:
-    """Return the atom. Raise ReadingError if the atom compares formulas or names no signal."""
+    """Return the atom. Raise ReadingError if it compares formulas or has no signal."""
     if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
         raise ReadingError("it uses a formula as a number: only numbers can be compared")
     if isinstance(node, Constant) or not signals(node):

@@ -14,15 +14,15 @@ from pytest_tarl.formulas.signals import NANOSECONDS, Timeline
 if TYPE_CHECKING:
     from pytest_tarl.formulas.robustness import Course
 
-LARGEST = 1e9  # robustness is clipped to ± this value, because a laser range, for example, may be infinite
+LARGEST = 1e9  # robustness is clipped to ± this value, because inputs (such as laser ranges) may be infinite
 NEGLIGIBLE = 1e-12  # smaller margins are shown as 0
 
 
 class Judged(NamedTuple):
-    """The result of one formula in an episode: its robustness, and the time (s) after which it could not hold.
+    """The result of a formula in an episode: its robustness, and when (s) it became impossible to satisfy.
 
-    The robustness is above 0 if the formula holds, and NaN if the episode ended too early to judge the formula. `lost`
-    is NaN unless the formula was violated.
+    Robustness is above 0 if the formula holds, and NaN if the episode was too short to judge it. `lost` is NaN unless
+    the formula was violated.
     """
 
     formula: str
@@ -47,11 +47,11 @@ class Judge:
         self._courses: dict[str, Course] = {}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Set a signal from an instant on. Raise SettingsError if the value is not a number."""
+        """Set a signal from a given time on. Raise SettingsError if the value is not a number."""
         self.timeline.give(name, value, time)
 
     def require(self, text: str) -> None:
-        """Add a formula. Raise SettingsError if the text is not one."""
+        """Add a formula. Raise SettingsError if the text is not a formula."""
         added = formula("tarl.require", text, self.names, self.said)
         if added not in self.formulas:
             self.formulas.append(added)
@@ -62,7 +62,7 @@ class Judge:
         return tuple(self._judged(one, end) for one in self.formulas)
 
     def unjudged(self, end: int) -> str:
-        """Return a sentence about a formula for which the episode was too short, or an empty string."""
+        """Return a sentence on a formula that the episode was too short for, or an empty text."""
         from pytest_tarl.formulas.reach import unjudged
 
         for one in self.formulas:
@@ -75,10 +75,10 @@ class Judge:
         return ""
 
     def rewards(self, end: int, cap: float) -> list[float]:
-        """Return the reward of each step, shape (steps,): the change of the lowest robustness so far.
+        """Return the reward of each step, shape (steps,): how much it changes the lowest robustness so far.
 
-        Robustness is clipped to ±cap. The sum of all rewards is the lowest robustness at the end of the episode. An
-        episode that ends before its signals are known earns -cap in total.
+        Robustness is clipped to ±cap. The rewards sum to the lowest robustness at the end of the episode. An episode
+        that ends before its signals are known earns -cap in total.
         """
         ends = [*self.steps[:-1], end] if self.steps else []
         if not ends:
@@ -93,7 +93,7 @@ class Judge:
         return [after - before for before, after in zip([0.0, *capped], capped, strict=False)]
 
     def violation(self, judged: Sequence[Judged]) -> str:
-        """Describe the violated formulas, with the earliest violation first; return an empty string if all hold."""
+        """Describe the violated formulas, earliest violation first; empty if all formulas hold."""
         broken = sorted((one for one in judged if one.violated), key=lambda one: one.lost)
         return "\n".join(self._sentence(one) for one in broken)
 

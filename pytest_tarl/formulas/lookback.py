@@ -1,4 +1,4 @@
-"""Evaluate formulas for finished missions, from the changes of signals in a log."""
+"""Evaluate formulas for finished missions, from the signal changes in a log."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from pytest_tarl.formulas.signals import NANOSECONDS
 
 @dataclass
 class Followed:
-    """The signals of one mission, collected from its log records; times are in seconds since it began."""
+    """The signals of a mission, collected from its log records; times are in seconds since its start."""
 
     changes: list[tuple[float, str, float]] = field(default_factory=list)  # (time, name, new value)
-    times: list[float] = field(default_factory=list)  # time at which each step ends
-    lasted: float | None = None  # length of the mission, or None if the log has no signals
+    times: list[float] = field(default_factory=list)  # end of each step
+    lasted: float | None = None  # length of the mission; None if the log has no signals
 
     def add(self, record: Mapping[str, Any]) -> None:
-        """Add the signals that a record holds."""
+        """Add the signals in a record."""
         self.changes += map(tuple, record.get("changes", ()))
         self.times += record.get("times", ())
         self.lasted = record.get("lasted", self.lasted)
@@ -30,7 +30,7 @@ class Followed:
 
 @dataclass(frozen=True)
 class LookedBack:
-    """The results of a mission's formulas; `rewards` is set only if the marker sets reward="robustness"."""
+    """The results of a mission's formulas; `rewards` is set only if the marker has reward="robustness"."""
 
     judged: tuple[Judged, ...] = ()
     violation: str = ""
@@ -38,9 +38,9 @@ class LookedBack:
 
 
 def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple[Formula, ...]:
-    """Return the formulas whose signals are in every mission's log.
+    """Return the formulas whose signals are in the log of every mission.
 
-    Raise LogError if rewards come from robustness and a signal of a formula is missing.
+    Raise LogError if robustness gives the rewards and a formula's signal is missing.
     """
     held = [{name for _, name, _ in one.changes} for one in missions if one.lasted]
     common = set.intersection(*held) if held and len(held) == len(missions) else set()
@@ -55,7 +55,7 @@ def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple
 
 
 def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requirements) -> LookedBack:
-    """Evaluate the formulas of a mission as if it were an episode."""
+    """Evaluate a mission's formulas as if it were an episode."""
     if not known or not mission.lasted:
         return LookedBack()
     judge = Judge(requirements.names, known)
@@ -70,7 +70,7 @@ def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requi
 
 
 def left_out(log: str, known: Sequence[Formula], requirements: Requirements) -> tuple[str, ...]:
-    """Name the signals that a log lacks, and the formulas that are therefore not judged."""
+    """Name the signals missing from a log, and the formulas that therefore cannot be judged."""
     names = [repr(one.text) for one in requirements.formulas if one not in known]
     if not names:
         return ()

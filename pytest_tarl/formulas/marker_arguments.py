@@ -23,22 +23,22 @@ LONGEST = 1e9  # upper limit of an episode's length (s)
 class Requirements:
     """The formulas of a test.
 
-    If robustness is the reward, `cap` limits it; otherwise, `cap` is None. `lasts` is the maximum length of an episode
-    in virtual seconds.
+    If robustness is the reward, `cap` limits it; otherwise it is None. `lasts` is the maximum length of an episode in
+    virtual seconds.
     """
 
     signals: tuple[Signal, ...] = ()
     formulas: tuple[Formula, ...] = ()
-    names: tuple[str, ...] = ()  # names of the numeric sensors and the signals, which formulas may use
+    names: tuple[str, ...] = ()  # numeric sensors and signals, which formulas may use
     rewarding: bool = False
     cap: float = CAP
-    # whether an episode must record signals from its beginning, because there may be formulas over them
+    # whether an episode must record signals from its start, because formulas may use them
     followed: bool = False
     said: Said = NOTHING_SAID
 
     @property
     def topics(self) -> frozenset[str]:
-        """Return the topics from which signals are read."""
+        """Return the topics that signals are read from."""
         return frozenset(signal.topic for signal in self.signals if signal.topic is not None)
 
 
@@ -48,9 +48,9 @@ NOTHING_REQUIRED = Requirements()
 def requirements(
     where: str, given: Mapping[str, Any], sensors: Sequence[Sensor], said: Said = NOTHING_SAID
 ) -> Requirements:
-    """Check the marker's arguments for formulas; `said` holds the names found in the test's source.
+    """Check the marker's arguments for formulas; `said` has the names found in the test's source.
 
-    A formula may name sensors, declared signals, and signals that the test sets by `tarl.observe`. Raise SettingsError
+    A formula may use sensors, declared signals, and signals that the test sets with `tarl.observe`. Raise SettingsError
     for invalid arguments.
     """
     declared = _signals(where, given.get("signals", ()), sensors)
@@ -86,7 +86,7 @@ def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal,
 
 
 def _observed(given: Any, said: Said, declared: Sequence[Sensor | Signal]) -> tuple[Signal, ...]:
-    """Return the observed but undeclared signals of a formula."""
+    """Return the signals of a formula that the test observes but does not declare."""
     known = {one.name for one in declared}
     texts = " ".join(
         one for one in (*(given if isinstance(given, Sequence) else ()), *said.texts) if isinstance(one, str)
@@ -110,7 +110,7 @@ def _formulas(
 
 
 def check_texts(where: str, text: Any, sensors: Sequence[Sensor]) -> None:
-    """Raise SettingsError if a formula names a sensor with string values."""
+    """Raise SettingsError if a formula uses a sensor with string values."""
     for sensor in sensors:
         if sensor.categories and isinstance(text, str) and re.search(rf"\b{sensor.name}\b", text):
             raise SettingsError(

@@ -1,4 +1,4 @@
-"""Parse and check formulas, with one sentence per mistake."""
+"""Parse and check formulas, with a one-sentence message for each mistake."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import install_command
 from pytest_tarl.formulas.said import NOTHING_SAID, Said
 
-NEWEST = (3, 12)  # newest Python that can import rtamt's parser
+NEWEST = (3, 12)  # newest Python version that can import rtamt's parser
 EXAMPLE = 'such as "always (gap > 0.3)"'
 
 
@@ -29,9 +29,9 @@ class Formula:
 
 
 def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SAID) -> Formula:
-    """Parse a formula over the given signals. Raise SettingsError, whose message begins with `where`.
+    """Parse a formula over these signals. Raise SettingsError, whose message begins with `where`.
 
-    `said` holds the names that the test's source observes; the message about an unknown name suggests one of them.
+    `said` has the names that the test's source observes; if a name is unknown, the message suggests one of them.
     """
     if not isinstance(text, str) or not text.strip():
         raise SettingsError(f"{where}: a formula is a string {EXAMPLE}, got {text!r}.")
@@ -48,7 +48,7 @@ def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SA
 
 
 def require_rtamt(where: str) -> None:
-    """Raise SettingsError if rtamt is missing or does not support this Python."""
+    """Raise SettingsError if rtamt is missing or does not support this Python version."""
     if sys.version_info[:2] > NEWEST:
         raise SettingsError(
             f"{where}: formulas need rtamt, which runs on Python 3.10 to 3.12; this is Python "

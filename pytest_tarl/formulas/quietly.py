@@ -1,4 +1,4 @@
-"""Import rtamt without the DeprecationWarning (`typing.io`) of its parsers."""
+"""Import rtamt without the DeprecationWarning (`typing.io`) that its parsers raise."""
 
 import warnings
 

@@ -1,4 +1,4 @@
-"""Check that every part of a formula is evaluated at some instant within the episode."""
+"""Check that every part of a formula is evaluated at some time during the episode."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 from pytest_tarl.formulas.semantics import BOOLEAN, FUTURE, PAST, TIMED, bounds, operands
 from pytest_tarl.formulas.signals import NANOSECONDS
 
-Span = tuple[float, float]  # first and last instant in ns, both included
+Span = tuple[float, float]  # first and last time in ns, both inclusive
 
 
 def unjudged(tree: Any, end: float = math.inf) -> str:
-    """Return why a formula can never be judged in an episode that ends at `end` (ns), or an empty string.
+    """Return why a formula can never be judged in an episode that ends at `end` (ns), or an empty text.
 
-    A formula is evaluated at the beginning of the episode. Its operands are evaluated at the instants that the windows
-    of its operators reach from there. The reason has no full stop.
+    A formula is evaluated at the start of the episode, and its operands at the times that the windows of its operators
+    reach from there. The reason has no full stop.
     """
     if not _temporal(tree):
         return "it is evaluated at the beginning of the episode only: put always or eventually before it"
@@ -34,7 +34,7 @@ def _unjudged(node: Any, span: Span, end: float) -> str:
 
 
 def _spans(node: Any, first: float, last: float) -> list[Span]:
-    """Return the spans of instants at which a node's operands are evaluated; none for a comparison."""
+    """Return the time spans in which a node's operands are evaluated; none for a comparison."""
     if isinstance(node, FUTURE):
         begin, end = bounds(node) if isinstance(node, TIMED) else (0, math.inf)
         return [(first, last + end), (first + begin, last + end)][-len(operands(node)) :]

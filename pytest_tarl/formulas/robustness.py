@@ -1,4 +1,4 @@
-"""Compute the robustness of a formula over an episode, and the instant after which it can no longer hold.
+"""Compute the robustness of a formula over an episode, and when it becomes impossible to satisfy.
 
 Robustness is the margin by which a formula holds; it is negative if the formula is violated.
 """
@@ -32,8 +32,8 @@ from pytest_tarl.formulas.semantics import (
 )
 from pytest_tarl.formulas.signals import Samples, cut
 
-Values = Mapping[int, Samples]  # samples of a formula's atoms, by id(node)
-# magnitude that stands for the unknown future values of an atom; it is larger than any real value
+Values = Mapping[int, Samples]  # samples of each atom of a formula, by id(node)
+# assumed size of an atom's unknown future values; larger than any real value
 FARTHEST = 1e308
 
 
@@ -45,16 +45,16 @@ class Course:
     values: Values
 
     def until(self, end: int) -> Course:
-        """Return the part of the course up to an instant."""
+        """Return the course up to a given time."""
         return replace(self, values={key: cut(samples, end) for key, samples in self.values.items()})
 
 
 def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
-    """Compute the atoms. Raise SettingsError if an atom has no value, for instance after a division by zero."""
+    """Compute the atoms. Raise SettingsError if one has no value, for example after a division by zero."""
     visitor = Atoms(signals)
     try:
         return Course(formula, {id(atom): visitor.visit(atom) for atom in atoms(formula.tree)})
-    except Exception as problem:  # rtamt raises instances of Exception itself
+    except Exception as problem:  # rtamt raises plain Exceptions
         raise SettingsError(
             f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Correct the formula, or the "
             "values of its signals."
@@ -62,21 +62,21 @@ def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
 
 
 def robustness(course: Course, end: int) -> float:
-    """Return a formula's robustness on the course up to an instant; it is positive if the formula is satisfied."""
+    """Return a formula's robustness on the course up to a given time; positive if it is satisfied."""
     samples = Skeleton(course.until(end).values, end).visit(course.formula.tree)
     return float(samples[0][1])
 
 
 def running(course: Course, ends: Sequence[int]) -> list[float]:
-    """Return the robustness on the course up to each of the given ascending instants."""
+    """Return the robustness on the course up to each of these times (ascending)."""
     return _running(course, course.formula.tree, ends)
 
 
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
-    """Return the first instant after which no future can satisfy the formula, or None if it can still be satisfied.
+    """Return the first time after which no future can satisfy the formula, or None if one still can.
 
-    The result is never too early. It can be too late if atoms depend on each other, because the future of each atom is
-    bounded separately.
+    The result is never too early. It can be too late if atoms depend on each other, because each atom's future is
+    assumed to be independent.
     """
     low, high = 0, len(instants)
     while low < high:
@@ -97,7 +97,7 @@ def _hopeless(course: Course, now: int) -> bool:
 
 
 def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Samples]) -> Any:
-    """Return a copy of a tree whose atoms have the most favourable values after `now`."""
+    """Return a copy of a tree in which atoms have their most favourable values after `now`."""
     copy = _copied(node)
     if not isinstance(node, CONNECTIVES):
         values[id(copy)] = [*known[id(node)], [now + 1, sign * FARTHEST]]
@@ -112,17 +112,17 @@ def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Sa
 
 
 def _copied(node: Any) -> Any:
-    """Copy a node without its children, so that an atom used twice can have two values."""
+    """Copy a node without its children, so that an atom that occurs twice can have two values."""
     copied = object.__new__(type(node))
     copied.__dict__.update(node.__dict__)
     return copied
 
 
 def _running(course: Course, node: Any, ends: Sequence[int]) -> list[float]:
-    """Return the robustness of a node at each instant.
+    """Return a node's robustness at each time.
 
     `always` and `eventually` are computed incrementally if their operands do not look ahead; all other nodes are
-    computed from scratch.
+    computed anew.
     """
     if isinstance(node, BOOLEAN):
         parts = [_running(course, child, ends) for child in operands(node)]
@@ -144,7 +144,7 @@ def _extremes(
     window: tuple[float, float],
     extreme: Callable[[float, float], float],
 ) -> list[float]:
-    """Return, for each instant in `ends`, the largest (or smallest) value up to it in a window from the beginning."""
+    """Return the largest (or smallest) value up to each time in `ends`, in a window from the start."""
     found: list[float] = []
     place, begun, seen = 0, False, samples[0][1]
 

@@ -29,9 +29,9 @@ class EpisodeFormulas:
             self._judge.give(name, value, self._now())
 
     def require(self, formula: str, *, begun: bool) -> None:
-        """Add a requirement; `begun` says whether the episode has begun.
+        """Add a requirement; `begun` says whether the episode has started.
 
-        Raise SettingsError if the formula cannot be used, or if the episode has begun without recording signals.
+        Raise SettingsError if the formula cannot be used, or if the episode has started without recording signals.
         """
         check_texts("tarl.require", formula, self._sensors)
         if self._judge is None:
@@ -44,16 +44,16 @@ class EpisodeFormulas:
         self._judge.require(formula)
 
     def stepped(self) -> bool:
-        """Close a step; return whether formulas give its reward. If so, it is known only at the end of the episode."""
+        """Close a step; return whether formulas give its reward, which is then known only after the episode."""
         if self._judge is None:
             return False
         self._judge.steps.append(self._now())
         return self._requirements.rewarding
 
     def conclude(self, *, whole: bool, alone: bool) -> None:
-        """Judge the formulas after the test body; only an episode that ran to its end (`whole`) can violate them.
+        """Judge the formulas after the test body; only an episode that was not cut short (`whole`) can violate them.
 
-        `alone` means a plain run of one episode, which must be long enough for every formula. Raise RequirementError if
+        `alone` marks a plain run of one episode, which must be long enough for every formula. Raise RequirementError if
         a formula is violated.
         """
         if self._judge is None:
@@ -74,7 +74,7 @@ class EpisodeFormulas:
             raise RequirementError(violation)
 
     def rewards(self) -> list[float] | None:
-        """Return the reward that formulas give to each step, shape (steps,), or None if the test sets the rewards."""
+        """Return each step's reward from the formulas, shape (steps,), or None if the test sets the rewards."""
         if not self._requirements.rewarding or self._judge is None:
             return None
         return self._judge.rewards(self._now(), self._requirements.cap)

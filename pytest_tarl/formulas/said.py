@@ -1,4 +1,4 @@
-"""Find formulas and signals in a test's source outside its marker."""
+"""Find the formulas and signals in a test's source outside its marker."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class Said:
     """The literal names in calls of `tarl.observe`, and the literal strings in calls of `tarl.require`.
 
-    `computed` says whether the name in any call of `tarl.observe` is computed; `requires` says whether the test calls
+    `computed` says whether some call of `tarl.observe` computes the name; `requires` says whether the test calls
     `tarl.require`.
     """
 

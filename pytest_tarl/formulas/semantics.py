@@ -1,13 +1,16 @@
 """Evaluate formulas in dense time with rtamt, corrected where rtamt differs from its documentation.
 
-Time is counted in whole nanoseconds. Signals are constant between their changes, and so is every subformula. After the
-known part of an episode, a subformula keeps its last value. Before the episode, it has its first value. Robustness is
-therefore finite whenever the signals are finite.
+Time is counted in whole nanoseconds. Signals, and therefore all subformulas, are constant between changes. Before the
+episode, a subformula has its first value, and after the known part its last one. Robustness is therefore finite
+whenever the signals are.
 
-rtamt 0.4 is corrected in dense time as follows. The left side of `until` and `since` need not hold at the instant at
-which the right side holds; this is rtamt's own rule in discrete time. A comparison of equal values is slightly positive
-if it holds and slightly negative otherwise (`TRUTH`). An empty window does not give infinity. Units of bounds are
-converted correctly.
+The dense time of rtamt 0.4 is corrected as follows:
+
+- The left side of `until` and `since` need not hold at the moment when the right side holds. (This is rtamt's own rule
+  in discrete time.)
+- A comparison of equal values is slightly positive if it holds, and slightly negative otherwise (`TRUTH`).
+- An empty window does not give infinity.
+- Units of bounds are converted correctly.
 """
 
 from __future__ import annotations
@@ -54,11 +57,11 @@ FUTURE = (Always, Eventually, Until, TimedAlways, TimedEventually, TimedUntil)
 PAST = (Historically, Once, Since, TimedHistorically, TimedOnce, TimedSince)
 TIMED = (TimedAlways, TimedEventually, TimedUntil, TimedHistorically, TimedOnce, TimedSince)
 CONNECTIVES = BOOLEAN + FUTURE + PAST
-STRICT = ("<", ">", "!=")  # comparisons that do not hold for equal values
+STRICT = ("<", ">", "!=")  # comparisons that are false for equal values
 
 
 def operands(node: Any) -> tuple[Any, ...]:
-    """Return the children of a node; rtamt lists those of some nodes twice."""
+    """Return a node's children; for some nodes, rtamt lists them twice."""
     binary = isinstance(node, (Conjunction, Disjunction, Implies, Until, TimedUntil, Since, TimedSince))
     return tuple(node.children[: 2 if binary else 1])
 
@@ -94,7 +97,7 @@ class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
 class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
     """Evaluate the connectives of a formula.
 
-    The samples of its atoms are given by id(node) and known up to `end` (ns).
+    The samples of its atoms are given, by id(node), up to time `end` (ns).
     """
 
     def __init__(self, atoms: Mapping[int, Samples], end: float) -> None:
@@ -102,27 +105,26 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         self._end = end
 
     def visit(self, node: Any, *args: Any, **kwargs: Any) -> Samples:
-        """Return the value of a node over time, cut off at `end`."""
+        """Return a node's value over time, cut off at `end`."""
         known = self._atoms.get(id(node))
         return known if known is not None else self._clipped(super().visit(node, *args, **kwargs))
 
     def time_unit_transformer(self, node: Any) -> tuple[int, int]:
-        """Return the window of a timed operator; rtamt calls this."""
+        """Return the window of a timed operator; called by rtamt."""
         return bounds(node)
 
     def visitUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the maximum over all instants t of min(right at t, minimum of left before t)."""
+        """Return the maximum over all times t of min(right at t, minimum of left before t)."""
         return _until(*self._both(node))
 
     def visitSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return `until` mirrored in time."""
+        """Return `until`, mirrored in time."""
         return _since(*self._both(node))
 
     def visitTimedUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
         """Return `until` with a window.
 
-        This means that the left side holds up to the start of the window, and that `until` holds from there on, within
-        the window.
+        The left side holds up to the start of the window; from there on, `until` holds within the window.
         """
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(
@@ -143,11 +145,11 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return dense.and_operation(held, _once(self._clipped(within), begin, begin))  # type: ignore[no-any-return]
 
     def visitTimedOnce(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the largest value in a window of the past."""
+        """Return the largest value in a past window."""
         return _once(self.visit(operands(node)[0]), *bounds(node))
 
     def visitTimedHistorically(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the smallest value in a window of the past."""
+        """Return the smallest value in a past window."""
         sample, (begin, end) = self.visit(operands(node)[0]), bounds(node)
         return _begun(dense.historically_timed_operation(sample, begin, end), sample)
 
@@ -187,5 +189,5 @@ def _once(sample: Samples, begin: int, end: int) -> Samples:
 
 
 def _begun(samples: Samples, operand: Samples) -> Samples:
-    """Use the operand's first value, instead of rtamt's infinity, in windows that lie wholly before the beginning."""
+    """Use the operand's first value instead of rtamt's infinity in windows that end before the start."""
     return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]

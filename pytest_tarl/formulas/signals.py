@@ -1,4 +1,4 @@
-"""Signals: named numbers, piecewise constant over virtual time."""
+"""Signals: named numbers that are piecewise constant over virtual time."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from pytest_tarl.ros_names import objection
 from pytest_tarl.sensors import CALLED, as_number
 
 NANOSECONDS = 1_000_000_000
-Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rtamt expects; the first time is 0
+Samples = list[list[Any]]  # [[time in ns, value], …], sorted by time, as rtamt expects; the first time is 0
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A number that formulas can use and that is not the value of a sensor.
+    """A number for formulas that is not the value of a sensor.
 
-    If `topic` and `field` are given, the number is read from every message on the topic, including messages that the
-    node publishes. `field` is a dotted path, or a function of the message. Otherwise the test sets the number by
+    If `topic` and `field` are given, the number is read from every message on the topic, including the node's own
+    messages. `field` is a dotted path, or a function of the message. Otherwise the test sets the number with
     `tarl.observe(gap=…)`.
     """
 
@@ -62,14 +62,14 @@ def stored_signal(signal: Signal) -> Signal:
 
 
 class Timeline:
-    """The values of all signals over an episode, in virtual ns."""
+    """The values of all signals during an episode, in virtual ns."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self._times: dict[str, list[int]] = {name: [] for name in names}
         self._values: dict[str, list[float]] = {name: [] for name in self._times}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Set a signal from an instant on. If an instant has several values, the last one counts; NaN is ignored.
+        """Set a signal from a given time on. Of several values at the same time, the last counts; NaN is ignored.
 
         Raise SettingsError if the value is not a number.
         """
@@ -88,14 +88,14 @@ class Timeline:
         return next((name for name in names if not self._times[name]), None)
 
     def samples(self, names: Iterable[str]) -> dict[str, Samples]:
-        """Return the signals as rtamt expects them."""
+        """Return the signals in rtamt's form."""
         return {
             name: [[time if i else 0, value] for i, (time, value) in enumerate(self._columns(name))]
             for name in names
         }
 
     def at(self, names: Iterable[str], time: int) -> Mapping[str, float]:
-        """Return the values of the signals at an instant."""
+        """Return the values of the signals at a given time."""
         found = {}
         for name in names:
             place = bisect_right(self._times[name], time) - 1
@@ -103,7 +103,7 @@ class Timeline:
         return found
 
     def instants(self, names: Iterable[str], end: int) -> list[int]:
-        """Return the instants at which a signal changed, in order, followed by the end."""
+        """Return the times at which a signal changed, in order, followed by the end."""
         return sorted({time for name in names for time in self._times[name] if time < end} | {0, end})
 
     def _columns(self, name: str) -> Iterable[tuple[int, float]]:
@@ -124,7 +124,7 @@ def signal_value(name: str, value: Any) -> float:
 
 
 def cut(samples: Samples, end: int) -> Samples:
-    """Return the samples up to an instant."""
+    """Return the samples up to a given time."""
     return samples[: max(1, bisect_left(samples, end + 1, key=_time))]
 
 
