@@ -1,4 +1,4 @@
-"""Convert the linter's findings to protocol objects: diagnostics, with the statements of a flow, and code lenses."""
+"""Convert the linter's findings to protocol objects: diagnostics with the statements of a flow, and code lenses."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _HAZARD = "TARL2"
 
 
 def diagnostics(result: Result, places: Places) -> dict[str, list[types.Diagnostic]]:
-    """Return the diagnostics of each linted file, by its path. Accepted findings become hints."""
+    """Return the diagnostics of each linted file by path. Accepted findings become hints."""
     found: dict[str, list[types.Diagnostic]] = {path: [] for path in result.texts}
     for finding in result.findings:
         found.setdefault(finding.span.path, []).append(_diagnostic(finding, places))
@@ -50,7 +50,7 @@ def _diagnostic(finding: Finding, places: Places) -> types.Diagnostic:
 
 
 def _page(code: str) -> types.CodeDescription | None:
-    """Return the URL of a rule's documentation; editors link the rule's code to it."""
+    """Return the URL of a rule's documentation; editors link it to the rule's code."""
     page = rule_page(code)
     return types.CodeDescription(page) if page else None
 
@@ -64,7 +64,7 @@ def _severity(finding: Finding) -> types.DiagnosticSeverity:
 
 
 def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInformation]:
-    """Return the statements of a flow with their roles; if the flow has a shortest chain, only those on the chain."""
+    """Return a flow's statements with their roles; only those on the shortest chain if there is one."""
     chosen = [flow.steps[at] for at in flow.chain] or list(flow.steps)
     return [
         types.DiagnosticRelatedInformation(places.location(step.span), f"{step.role}: {step.code}")
@@ -73,7 +73,7 @@ def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInfor
 
 
 def lenses(result: Result, path: str, places: Places) -> list[types.CodeLens]:
-    """Return a code lens above each publish call in a file: the sources of its data and of its conditions."""
+    """Return a code lens above each publish call in a file, with the sources of its data and conditions."""
     by_call: dict[Span, list[Flow]] = defaultdict(list)
     for finding in (*result.findings, *result.silenced):
         if finding.flow is not None and finding.flow.sink.span.path == path:

@@ -54,7 +54,7 @@ def fixes(
 
 
 def _comment(path: str, at: types.Range, code: str, places: Places) -> types.TextEdit:
-    """Return the edit that ignores a finding: it adds an ignore comment, or the rule's code to the existing one."""
+    """Return the edit that adds an ignore comment, or adds the rule's code to an existing one."""
     number = at.end.line + 1
     line = places.line(path, number)
     known = _IGNORED.search(line)

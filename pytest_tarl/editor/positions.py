@@ -1,4 +1,4 @@
-"""Convert positions. The linter counts characters from 1, the protocol counts UTF-16 code units from 0."""
+"""Convert positions: the linter counts characters from 1, the protocol counts UTF-16 code units from 0."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Places:
         return (self._root / path).as_uri()
 
     def line(self, path: str, number: int) -> str:
-        """Return line `number` (from 1) without its line ending, or "" if the file is shorter or was not linted."""
+        """Return line `number` (from 1) without its line ending; empty if it does not exist or was not linted."""
         if path not in self._lines:
             self._lines[path] = self._texts.get(path, "").split("\n")
         lines = self._lines[path]

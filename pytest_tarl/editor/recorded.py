@@ -1,7 +1,7 @@
 """Results of the last comparisons by line: utility, its difference under a drift, rank, and accepted repairs.
 
-The source is `.tarl/results/*.json`. Statements are matched by site ID, not by line number, so lines that moved keep
-their figures.
+They are read from `.tarl/results/*.json`. Statements are matched by site ID and not by line number, so lines that moved
+keep their figures.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tarl_lint.model import Step
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures of one statement in one comparison. Utilities are in units of reward."""
+    """The figures of a statement in one comparison; utilities are in units of reward."""
 
     test: str
     drift: str
@@ -29,20 +29,20 @@ class Figures:
 
     @property
     def difference(self) -> float:
-        """Return the change of the statement's utility from the designed to the deployed world."""
+        """Return how much the statement's utility changes from the designed to the deployed world."""
         return self.online - self.offline
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """All comparisons of a project. `patches` maps edited files to the patches of accepted repairs."""
+    """All comparisons of a project; `patches` maps edited files to the patches of accepted repairs."""
 
     by_site: Mapping[str, tuple[Figures, ...]] = field(default_factory=dict)
     patches: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
 
 
 def read(root: Path) -> Recorded:
-    """Read the results below `.tarl`; skip damaged files and other formats."""
+    """Read the results below `.tarl`; skip files that are damaged or in another format."""
     found = [_document(path, root) for path in sorted(root.joinpath(".tarl", "results").glob("*.json"))]
     sites: dict[str, list[Figures]] = {}
     patches: dict[str, list[Path]] = {}
@@ -86,13 +86,13 @@ def _figures(document: Mapping[str, Any]) -> Iterator[tuple[str, Figures]]:
 
 
 def steps(result: Result, path: str) -> dict[str, Step]:
-    """Return the statements in a file that are part of a flow, by site id."""
+    """Return the statements of a file that belong to a flow, by site id."""
     flows = (finding.flow for finding in (*result.findings, *result.silenced) if finding.flow is not None)
     return {str(step.site): step for flow in flows for step in flow.steps if step.span.path == path}
 
 
 def hover(figures: tuple[Figures, ...]) -> str:
-    """Return a Markdown table with the figures of a statement."""
+    """Return a Markdown table of a statement's figures."""
     rows = []
     for one in figures:
         utilities = f"{one.offline:.4g} | {one.online:.4g} | {one.difference:+.4g}"
@@ -102,6 +102,6 @@ def hover(figures: tuple[Figures, ...]) -> str:
 
 
 def hint(figures: tuple[Figures, ...]) -> str:
-    """Return the inlay hint for a statement, or "" if no comparison ranks it."""
+    """Return the inlay hint for a statement; empty if no comparison ranks it."""
     ranked = [one for one in figures if one.rank is not None]
     return ", ".join(f"#{one.rank} {one.drift} {one.difference:+.3g}" for one in ranked)

@@ -1,4 +1,4 @@
-"""The language server: lint the workspace after changes and answer the editor's requests from the last result."""
+"""The language server: lint the workspace after changes, and answer the editor's requests from the last result."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tarl_lint.errors import LintError
 
 # patch → lines to show; raises TarlError if the patch no longer fits the files
 Apply = Callable[[Path], Iterable[str]]
-PAUSE = 0.15  # the workspace is linted once the user has typed nothing for this time (s)
+PAUSE = 0.15  # seconds without typing before the workspace is linted
 CHANGES = (
     types.TEXT_DOCUMENT_DID_OPEN,
     types.TEXT_DOCUMENT_DID_CHANGE,
@@ -32,7 +32,7 @@ CHANGES = (
 
 
 class Server(LanguageServer):
-    """A workspace in an editor. State changes only in the event loop; linting and reading files run in threads."""
+    """A workspace in an editor. State changes only in the event loop; threads lint and read files."""
 
     def __init__(self, apply: Apply) -> None:
         super().__init__("tarl", version("tarl"), types.TextDocumentSyncKind.Incremental)
@@ -41,7 +41,7 @@ class Server(LanguageServer):
         self.linted: Workspace | None = None
         self.result: Result | None = None
         self.places = Places(self.root, {})
-        # converts positions in the file contents for which diagnostics were last published
+        # positions in the file contents whose diagnostics were published last
         self.shown_in = self.places
         self.kept = recorded.Recorded()
         self.shown: dict[str, list[types.Diagnostic]] = {}
@@ -57,7 +57,7 @@ class Server(LanguageServer):
         self.linted = Workspace([root])
 
     def changed(self) -> None:
-        """Lint after PAUSE; another change restarts the wait."""
+        """Lint after PAUSE; each further change restarts the wait."""
         self._changes += 1
         if self._waiting is not None:
             self._waiting.cancel()
@@ -70,8 +70,8 @@ class Server(LanguageServer):
     async def lint(self) -> None:
         """Lint the workspace with the open buffers, and publish changed diagnostics.
 
-        If there is another change, stop before the next program and start a new run. Files whose findings are final get
-        their diagnostics while other programs are still being analysed.
+        After another change, stop before the next program and start again. Files whose findings are final get their
+        diagnostics while other programs are still being analysed.
         """
         if self.linted is None:
             return
@@ -114,7 +114,7 @@ class Server(LanguageServer):
         return path if path is not None and path.is_relative_to(self.root) else None
 
     def shown_path(self, uri: str) -> str | None:
-        """Return the path of a URI as the linter names it, or None if it is not below the root."""
+        """Return the path that the linter uses for a URI, or None if it is not below the root."""
         path = self.path(uri)
         return path.relative_to(self.root).as_posix() if path is not None else None
 
@@ -131,7 +131,7 @@ class Server(LanguageServer):
     def _publish_some(self, result: Result, settled: frozenset[str]) -> None:
         """Publish the diagnostics of some files.
 
-        The diagnostics of other files may be outdated, because the text of these files may have changed.
+        Other files keep theirs: their text may have changed, so their diagnostics may be outdated.
         """
         self.shown_in = Places(self.root, result.texts)
         found = diagnostics.diagnostics(result, self.shown_in)
