@@ -1,1 +1,1 @@
-"""`--tarl-resume`: keep every finished episode of a run, and continue an interrupted run from the kept episodes."""
+"""`--tarl-resume`: keep every finished episode of a run, and continue an interrupted run with them."""

@@ -1,7 +1,7 @@
-"""The file of a run's finished episodes, which are appended one by one and read after an interruption.
+"""The file of a run's finished episodes: appended one by one, and read after an interruption.
 
-The first line names the format. The first record holds the conditions of the run as JSON; every other record holds a
-key and an episode. A record that an interruption cut off is ignored and removed.
+The first line names the format. The first record has the conditions of the run as JSON; each other record has a key and
+an episode. If the last record is incomplete because of an interruption, it is ignored and removed.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ except ImportError:  # pragma: no cover - Windows: two runs of one test at a tim
     fcntl = None  # type: ignore[assignment]
 
 MAGIC = b"tarl episodes 1\n"
-KEY = 32  # length of an episode's key (bytes)
-LARGEST = 1 << 30  # maximum size of a record (bytes)
-SYNC = 1.0  # time between two syncs (s); a power cut loses at most the episodes that ended within this time
+KEY = 32  # bytes of an episode's key
+LARGEST = 1 << 30  # maximum bytes of a record
+SYNC = 1.0  # seconds between two syncs; a power cut loses at most the episodes that ended in this time
 
 
 class TakenError(OSError):
-    """Raised if another run is writing the file."""
+    """Another run is writing the file."""
 
 
 class Journal:
     """The kept episodes of one run.
 
-    Any thread may call `keep`. If the disk fails, episodes are no longer kept, but the run continues.
+    Any thread may call `keep`. If the disk fails, no more episodes are kept, but the run continues.
     """
 
     def __init__(self, path: Path, conditions: dict[str, Any]) -> None:
         self.path = path
         self.conditions = conditions
-        self.problem: OSError | None = None  # why episodes are no longer kept
+        self.problem: OSError | None = None  # why no more episodes are kept
         self._lock = threading.Lock()
         self._file: BinaryIO | None = None
         self._places: dict[bytes, list[int]] = {}  # key → offsets of its records
@@ -53,7 +53,7 @@ class Journal:
         return sum(map(len, self._places.values()))
 
     def resume(self) -> None:
-        """Continue the file: its episodes can be taken, and new ones are appended. Raise OSError on failure."""
+        """Continue the file: read its episodes and append new ones. Raise OSError if this fails."""
         file = _locked(self.path, "r+b")
         end = _start(file)
         while (payload := next_payload(file, LARGEST)) is not None:
@@ -93,7 +93,7 @@ class Journal:
                     self._sync(file)
 
     def remove(self) -> None:
-        """Delete the file, and its folder if no other run keeps episodes there."""
+        """Delete the file, and its folder unless other runs keep episodes there."""
         self.close()
         with suppress(OSError):
             self.path.unlink(missing_ok=True)
@@ -132,7 +132,7 @@ class Journal:
 
 
 def conditions_of(path: Path) -> tuple[dict[str, Any], int] | None:
-    """Return the conditions of a file's episodes, and the number of episodes; None if it has no episode."""
+    """Return the conditions and the number of a file's episodes; None if it has no episodes."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC or (first := next_payload(file, LARGEST)) is None:
@@ -154,7 +154,7 @@ def _start(file: BinaryIO) -> int:
 
 
 def _locked(path: Path, mode: str) -> BinaryIO:
-    """Open a file that no other run has open. Raise TakenError if another run has it open."""
+    """Open a file for this run only. Raise TakenError if another run has it open."""
     file: Any = path.open(mode)
     if fcntl is not None:
         try:
@@ -167,7 +167,7 @@ def _locked(path: Path, mode: str) -> BinaryIO:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Write the entry of a new file to disk, where the system supports it."""
+    """Write a new file's directory entry to disk, if the system supports this."""
     with suppress(OSError):
         place = os.open(folder, os.O_RDONLY)
         try:

@@ -1,7 +1,7 @@
-"""A rollout that keeps the episodes it has run, and reuses those that an interrupted run kept.
+"""A rollout that keeps the episodes it runs, and reuses those kept by an interrupted run.
 
-An episode is a function of its plan, so a kept episode can replace a run of the plan. Equal plans are numbered, because
-a recording runs its first episode twice, which makes two equal plans.
+An episode is a function of its plan, so a kept episode can replace a run of the same plan. Equal plans are numbered,
+because a recording runs its first episode twice.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytest_tarl.workers import protocol
 
 
 class KeptRollout:
-    """Run those episodes of another rollout that are not in the journal; `shown` is the journal's path for messages."""
+    """Run only those episodes that are not in the journal; `shown` is the journal's path in messages."""
 
     def __init__(
         self, rollout: Rollout, journal: Journal, scope: bytes, shown: str, *, checked: bool = False
@@ -33,7 +33,7 @@ class KeptRollout:
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = checked  # whether a kept episode was run again and gave the same result
+        self._checked = checked  # whether a kept episode was run again, with the same result
 
     @property
     def workers(self) -> int:
@@ -45,7 +45,7 @@ class KeptRollout:
         return self.begin(plan).result()
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Request an episode. Raise RecordingError if the first kept episode gives another result on repetition."""
+        """Request an episode. Raise RecordingError if the first kept episode gives another result when repeated."""
         key = episode_key(plan, self._scope)
         count = self._begun[key]
         self._begun[key] += 1
@@ -66,8 +66,8 @@ class KeptRollout:
         self._begun[key] -= 1
 
     def _check(self, key: bytes, kept: EpisodeRun) -> None:
-        """Run the first kept episode again, and keep the new result. Raise RecordingError if the results differ."""
-        if self._checked or kept.simulator:  # an external simulator may give another result in each run
+        """Run the first kept episode again, and keep the new result. Raise RecordingError if they differ."""
+        if self._checked or kept.simulator:  # external simulators may give another result each time
             return
         self._checked = True
         again = self._rollout(kept.plan)
@@ -82,7 +82,7 @@ class KeptRollout:
 
 @dataclass(frozen=True)
 class _Kept:
-    """An episode that an earlier run has kept."""
+    """An episode kept by an earlier run."""
 
     run: EpisodeRun
 

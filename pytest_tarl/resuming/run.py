@@ -1,4 +1,4 @@
-"""Find, continue and remove the kept episodes of all tests in one run of pytest."""
+"""Find, continue and remove the kept episodes of all tests in a pytest run."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ COMPLETE = (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED)
 
 @dataclass
 class ResumableTest:
-    """A test that runs in one mode, and its finished episodes that are kept; `tell` prints a sentence immediately."""
+    """A test in one mode, with its kept episodes; `tell` prints a sentence at once."""
 
     item: pytest.Function
     designation: Designation
@@ -48,7 +48,7 @@ class ResumableTest:
         return KeptRollout(rollout, self.journal, scope, self._shown, checked=checked)
 
     def interrupted(self) -> str:
-        """Return a sentence about the episodes that an interrupted run kept, or an empty string."""
+        """Return a sentence on the episodes kept by an interrupted run, or an empty text."""
         if self.journal is None:
             return ""
         if self.journal.problem is not None:
@@ -113,7 +113,7 @@ class ResumableTest:
 
 @dataclass
 class ResumableRun:
-    """The tests of a run whose episodes are kept. Files are removed when the run ends without an interruption."""
+    """The tests of a run that keep their episodes. Files are removed when the run ends without an interruption."""
 
     tests: list[ResumableTest] = field(default_factory=list)
 
@@ -124,7 +124,7 @@ class ResumableRun:
         options: Options,
         tell: Callable[[str], None],
     ) -> ResumableTest:
-        """Return a new test, or the existing one if several calls for a test share a total number of episodes."""
+        """Return a test; if several calls share a total number of episodes, return the existing one."""
         known = next((one for one in self.tests if one.item is item), None)
         if known is not None and options.total is not None:
             return known
@@ -132,7 +132,7 @@ class ResumableRun:
         return self.tests[-1]
 
     def ended(self, status: int) -> None:
-        """Remove the episodes of finished tests if the run is complete; write all others to disk."""
+        """Remove the episodes of finished tests if the run is complete; write the others to disk."""
         for one in self.tests:
             one.close()
             if one.finished and one.journal is not None and status in COMPLETE:

@@ -1,4 +1,4 @@
-"""The conditions of a run: kept episodes are reused only if all conditions are unchanged."""
+"""The conditions of a run: kept episodes are reused only if all of them are unchanged."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.modules_of_tests import modules
 from pytest_tarl.options import Options
 from pytest_tarl.sensors import declared
 
-NAMED = 3  # maximum number of changes that a message names
+NAMED = 3  # maximum number of changes to name in a message
 FOLDERS = (".venv", "__pycache__", ".git", ".tarl")
 
 
@@ -27,7 +27,7 @@ def conditions(
     """Return the conditions of a run by name, as JSON: digests of files, and values of settings.
 
     `files` are the files of the recorded statements. Settings that only select or judge episodes are left out: the
-    number of episodes, the level of significance, the search.
+    number of episodes, the significance level, and the search.
     """
     nodes = [(folder / node).resolve() for node in designation.nodes]
     code = {path.resolve() for path in files} | {one for node in nodes for one in _sources(node)}
@@ -49,7 +49,7 @@ def conditions(
 
 
 def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return in words what differs between two runs, or an empty string."""
+    """Describe the differences between two runs, or return an empty text."""
     found = list(_changes(before, now))
     more = f" and {len(found) - NAMED} more" if len(found) > NAMED else ""
     return "; ".join(found[:NAMED]) + more
