@@ -1,1 +1,1 @@
-"""The command `tarl`: inspect recordings, apply patches and watch robots without pytest."""
+"""The command `tarl`: inspect recordings, apply patches and watch robots, without pytest."""

@@ -40,7 +40,7 @@ def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
     """Undo patches; return the output. Raise RefusedError."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
-    # skip the files that an interrupted `tarl apply` did not reach
+    # `tarl apply` was interrupted: skip the files that it did not reach
     if any(target.done for target in targets):
         targets = [target for target in targets if not (len(target.parts) == 1 and target.as_searched)]
     contents: dict[Path, bytes] = {}
@@ -62,13 +62,13 @@ def _together(patches: Sequence[Patch]) -> None:
 
 
 def _halfway(targets: Sequence[Target]) -> set[Path]:
-    """Return the files that an interrupted run has changed."""
+    """Return the files that an interrupted run has already changed."""
     done = {target.path for target in targets if target.done}
     return done if len(done) < len(targets) else set()
 
 
 def _changed(target: Target, force: bool) -> bytes:
-    """Return a file's patched content. Raise RefusedError if it was not tested."""
+    """Return a file's patched content. Raise RefusedError if this content was not tested."""
     if target.as_searched:
         for patch, file in target.parts:
             tested(target, patch, file, target.content)
@@ -99,7 +99,7 @@ def _changed(target: Target, force: bool) -> bytes:
 
 
 def _before_others(content: bytes, patch: Patch, file: FilePatch) -> bytes | None:
-    """Return the tested text below other patches, if `content` contains it."""
+    """Return the tested text underneath other patches, if `content` contains it."""
     others = sorted(path for path in patch.path.parent.glob("*.patch") if path.name != patch.name)
     for path in others:
         try:
@@ -166,19 +166,19 @@ def _write(targets: Sequence[Target], contents: Mapping[Path, bytes]) -> None:
 
 
 def _again(patches: Sequence[Patch]) -> list[str]:
-    """Return the commands that repeat the comparisons of the tests."""
+    """Return the commands that repeat the tests' comparisons."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("again"))
     return [f"again: {_move(patches)}{command}" for command in commands]
 
 
 def _move(patches: Sequence[Patch]) -> str:
-    """Return the shell prefix that changes the folder."""
+    """Return the shell prefix that changes to the right folder."""
     root = patches[0].root
     return f"cd {shlex.quote(shown(root))} && " if root is not None and root != Path.cwd() else ""
 
 
 def _recording(patches: Sequence[Patch], targets: Sequence[Target]) -> list[str]:
-    """Return advice to record a permanent drift and commit the recording."""
+    """Return the advice to record a permanent drift and commit the recording."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("record"))
     if not commands:
         return []

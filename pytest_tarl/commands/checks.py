@@ -35,7 +35,7 @@ def sealed(patch: Patch) -> None:
 
 
 def clean(targets: Sequence[Target]) -> Iterator[str]:
-    """Raise RefusedError for uncommitted changes; yield notes on unchecked files."""
+    """Raise RefusedError for uncommitted changes; yield notes on files that could not be checked."""
     for target in targets:
         if not any((folder / ".git").exists() for folder in target.path.parents):
             yield f"note:  {target.shown} is not in a git repository, so uncommitted changes cannot be detected"
@@ -51,7 +51,7 @@ def clean(targets: Sequence[Target]) -> Iterator[str]:
 
 
 def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
-    """Raise RefusedError for a new recording; yield a note on each missing one."""
+    """Raise RefusedError if the recording is new; yield a note for each missing recording."""
     for patch in patches:
         for told in patch.told("fixture"):
             digest, _, name = told.partition(" ")
@@ -67,15 +67,15 @@ def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
 
 
 def _content(path: Path, root: Path) -> bytes | None:
-    """Return the content of a path in a header, or None."""
+    """Return the content of a path from a patch's header, or None."""
     try:
         return read_regular(path) if path.is_file() and path.resolve().is_relative_to(root) else None
-    except (OSError, ValueError):  # the file is unreadable, or its name is invalid
+    except (OSError, ValueError):  # unreadable file or invalid name
         return None
 
 
 def whole(patches: Sequence[Patch]) -> None:
-    """Raise RefusedError if a patch is a partial repair."""
+    """Raise RefusedError if a patch is only a partial repair."""
     for patch in patches:
         for told in patch.told("partial"):
             raise RefusedError(

@@ -20,11 +20,11 @@ from pytest_tarl.errors import RefusedError, TarlError
 from pytest_tarl.extras import missing_extra, missing_fleet, missing_server
 from pytest_tarl.printable import print_lines, printable
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errno values that mean a full or failing disk
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errno values of a full or failing disk
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; return 0, 1 for a failed check or 2 for a user error."""
+    """Run a command; return 0, or 1 for a failed check, or 2 for a user error."""
     _prepare_streams()
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")
@@ -66,7 +66,7 @@ def _prepare_streams() -> None:
 
 
 def _discard_output() -> None:
-    """Discard the remaining output, since Python would otherwise report an error at exit."""
+    """Discard the remaining output; otherwise Python reports an error at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -103,7 +103,7 @@ def parser() -> Parser:
 
 
 def _nothing(_: str) -> str | None:
-    """Return None: the command needs no additional packages."""
+    """Return None: the command needs no extra packages."""
     return None
 
 
@@ -121,7 +121,7 @@ def _workspace(arguments: argparse.Namespace) -> int:
 def _lsp(_: argparse.Namespace) -> int:
     from tarl_lint import import_path
 
-    import_path.restrict()  # never import modules from the workspace, even if `tarl` was started there
+    import_path.restrict()  # never import modules from the workspace, even when started there
     from pytest_tarl.editor.server import main as serve
 
     return serve(_applied)

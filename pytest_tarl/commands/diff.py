@@ -25,8 +25,8 @@ class Moved:
 class FixtureDiff:
     """The changes.
 
-    `loss` is A's mean reward per episode minus B's, with the p-value `p_loss`. `success` holds the share of successful
-    missions in A and in B, and `p_failures` the p-value of a decrease. Both p-values are corrected for two tests.
+    `loss` is A's mean reward per episode minus B's, with the p-value `p_loss`. `success` has the success rates of A and
+    B, and `p_failures` is the p-value of a decrease. Both p-values are corrected for two tests.
     """
 
     loss: float
@@ -35,15 +35,15 @@ class FixtureDiff:
     gone: tuple[SitePlace, ...]
     new: tuple[SitePlace, ...]
     moved: tuple[Moved, ...]
-    cells: tuple[int, int, int]  # number of cells only in recording A, in both, only in B
+    cells: tuple[int, int, int]  # number of cells only in A, in both, only in B
     same_sensors: bool
     p_failures: float = 1.0
 
     def worse(self, alpha: float, most: float = 0.0) -> bool:
         """Return whether B is significantly worse.
 
-        B is worse in two cases: it earns less than A by more than `most` per episode, or its share of successful
-        missions is lower by more than PASS_RATE_LOSS.
+        B is worse if it earns less than A by more than `most` per episode, or if its success rate is lower by more than
+        PASS_RATE_LOSS.
         """
         fail_more = self.p_failures < alpha and succeed_less(self.success)
         return (self.loss > most and self.p_loss < alpha) or fail_more
@@ -55,11 +55,11 @@ class FixtureDiff:
 
 
 SIGNIFICANT = 0.05
-MOST = 12  # maximum number of statements that are listed per kind
+MOST = 12  # maximum number of statements to list per kind
 
 
 def compared(first: Fixture, second: Fixture) -> FixtureDiff:
-    """Compare two recordings; their tests may have different names."""
+    """Compare two recordings; the names of their tests may differ."""
     before, after = _sites(first), _sites(second)
     mine, theirs = set(first.sample.cells), set(second.sample.cells)
     a, b = first.sample, second.sample
@@ -115,7 +115,7 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
 
 
 def _first(rows: list[str]) -> Iterator[str]:
-    """Yield the first MOST rows, then a line with the number of omitted rows."""
+    """Yield the first MOST rows, then a line with the number of rows left out."""
     yield from rows[:MOST]
     if len(rows) > MOST:
         yield f"             … and {len(rows) - MOST} more"

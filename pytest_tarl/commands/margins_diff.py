@@ -11,7 +11,7 @@ MARKS = {"more fragile": "❌ ", "more robust": "✅ ", "not comparable": "⚠�
 
 
 def guarantees_changed(before: Sequence[Margins], after: Sequence[Margins]) -> Iterator[str]:
-    """Yield a note for each test whose guarantee has changed."""
+    """Yield a note for each test whose guarantee changed."""
     old = {one.title: one for one in before}
     for one in after:
         was = old.get(one.title)
@@ -34,7 +34,7 @@ def lines(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def markdown(rows: Sequence[Row], since: str) -> Iterator[str]:
-    """Yield the rows as a table, for a comment on a pull request."""
+    """Yield the rows as a table for a pull request comment."""
     yield f"| test | direction | boundary {since} | boundary now | change |"
     yield "|---|---|---|---|---|"
     for row in rows:
@@ -51,7 +51,7 @@ def table(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def plain(text: str) -> str:
-    """Return a string that is safe in a table cell."""
+    """Return a string that is safe inside a table cell."""
     return text.translate(_HARMLESS)
 
 

@@ -14,15 +14,15 @@ FOLDER = ".tarl/margins"
 
 
 def is_recording(place: str) -> bool:
-    """Return whether an argument of `tarl diff` names a recording."""
+    """Return whether an argument of `tarl diff` is a recording."""
     return place.endswith(".npz")
 
 
 def margins_in(place: str) -> list[Margins]:
-    """Return the margins of a file, or of the `.json` files of a folder in the order of their names.
+    """Return the margins in a file, or in the `.json` files of a folder, sorted by name.
 
-    Raise FixtureError if the place does not exist or if a file contains no margins. If the folder does not exist at a
-    revision, there are no margins.
+    Raise FixtureError if the place does not exist or a file has no margins. A folder that does not exist at a revision
+    has no margins.
     """
     path = Path(place)
     if path.is_dir():
@@ -45,7 +45,7 @@ def _file(path: Path) -> Margins:
 
 
 def _at(revision: str, inner: str) -> list[Margins]:
-    """Return the margins at a revision, in paths relative to the working directory."""
+    """Return the margins at a revision; paths are relative to the working directory."""
     if revision.startswith("-") or not revision:
         raise FixtureError(f"{revision!r} is not a git revision: name a branch, a tag or a commit.")
     if shutil.which("git") is None:

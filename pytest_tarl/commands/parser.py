@@ -1,4 +1,4 @@
-"""Parse the command line of `tarl`; explain errors in one sentence."""
+"""Parse the command line of `tarl`, with one-sentence error messages."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NO_COMMAND = "the following arguments are required: COMMAND"
 class Parser(argparse.ArgumentParser):
     """The parser of `tarl` or of one of its commands.
 
-    `passing` names the commands whose arguments after `--` are stored in `argv`.
+    `passing` has the commands whose arguments after `--` are stored in `argv`.
     """
 
     passing: frozenset[str] = frozenset()
 
     def error(self, message: str) -> NoReturn:
-        """Print the usage and a sentence, and exit with 2."""
+        """Print the usage and a sentence, then exit with 2."""
         if message == NO_COMMAND:
             self.print_help(sys.stderr)
         else:
@@ -29,9 +29,9 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"\n{self.prog}: {sentence(message)} Run {self.prog} --help for more.\n")
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
-        """Parse the arguments; errors show the usage of the command."""
+        """Parse the arguments; errors show the usage of the command in question."""
         given = sys.argv[1:] if args is None else list(args)
-        # argparse fills `argv` as soon as it meets the first positional argument, and would refuse options after it
+        # argparse starts to fill `argv` at the first positional argument, and would reject options after it
         end = given.index("--") if given[:1] and given[0] in self.passing and "--" in given else len(given)
         found, extra = self.parse_known_args(given[:end])
         if end < len(given):

@@ -28,7 +28,7 @@ class MovedError(Exception):
 
 @dataclass(frozen=True)
 class Change:
-    """A file in `project` that changes from `before` to `after`."""
+    """A file in `project` to be changed from `before` to `after`."""
 
     path: Path
     project: Path
@@ -38,7 +38,7 @@ class Change:
 
 @dataclass(frozen=True)
 class _Opened:
-    """A change whose folder is held open and cannot be replaced."""
+    """A change whose folder is kept open, so that it cannot be replaced."""
 
     change: Change
     folder: int | None
@@ -74,7 +74,7 @@ def replace_all(changes: Sequence[Change]) -> None:
 
 @contextmanager
 def _held(change: Change) -> Iterator[_Opened]:
-    """Open a file's folder. Raise OSError at a symbolic link."""
+    """Open a file's folder. Raise OSError if the path contains a symbolic link."""
     if not RELATIVE:
         if change.path.resolve() != change.path:
             raise MovedError(change.path)
@@ -97,7 +97,7 @@ def _held(change: Change) -> Iterator[_Opened]:
 
 
 def _stage(one: _Opened, new: str, old: str) -> None:
-    """Write the new content beside the file, and keep the old one."""
+    """Write the new content beside the file, and keep the old content."""
     try:
         with os.fdopen(os.open(one.name(), _READ, dir_fd=one.folder), "rb") as file:
             status = os.fstat(file.fileno())

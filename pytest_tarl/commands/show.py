@@ -13,14 +13,14 @@ from pytest_tarl.model import TaintList
 from pytest_tarl.report.guarantee_words import percent, sentences
 from pytest_tarl.sensors import Sensor
 
-CODE = 60  # maximum number of characters of a line of code
-FEW = 24  # maximum number of statements listed without --sites
+CODE = 60  # maximum characters of a line of code
+FEW = 24  # maximum number of statements to list without --sites
 
 
 def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = False) -> Iterator[str]:
-    """Yield the summary of a recording of `size` bytes; `sizes` are the sizes of its taint lists in bytes.
+    """Yield the summary of a recording of `size` bytes; `sizes` are the bytes of its taint lists.
 
-    List the statements if there are few, or if `every` is true.
+    Statements are listed if there are few of them, or if `every` is true.
     """
     sample = fixture.sample
     yield f"{fixture.test}, seed {fixture.seed}"
@@ -49,7 +49,7 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
 
 
 def described(sensor: Sensor, bins: Sequence[int]) -> str:
-    """Describe a sensor and how many of its bins were visited."""
+    """Describe a sensor, and how many of its bins were visited."""
     origin = f"{sensor.topic} {sensor.field}" if sensor.topic else "observed"
     origin += f", node variable {sensor.expr}" if sensor.expr else ""
     if len(sensor.edges) == 1:

@@ -1,6 +1,6 @@
-"""`tarl summary`: the results of the last comparisons and stress runs as Markdown.
+"""`tarl summary`: show the results of the last comparisons and stress runs as Markdown.
 
-Use it for a comment on a pull request or the page of a CI job.
+The output is meant for a pull request comment or the page of a CI job.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ BARS = 8  # maximum number of statements in a chart
 
 
 def markdown(folder: Path, since: str | None = None) -> str:
-    """Return the results in `folder` and their margins as Markdown.
+    """Return the results and margins in `folder` as Markdown.
 
-    With `since`, compare the margins with those at this git revision. Raise FixtureError if there are no results, or if
-    a file cannot be read.
+    With `since`, compare the margins with those at this git revision. Raise FixtureError if there are no results or a
+    file cannot be read.
     """
     paths = sorted(folder.glob("*.json"))
     margins = folder.parent / "margins"
@@ -39,7 +39,7 @@ def markdown(folder: Path, since: str | None = None) -> str:
 
 
 def _margins(folder: Path, since: str | None) -> list[str]:
-    """Return the margins as a table, perhaps compared with a revision."""
+    """Return the margins as a table, compared with a revision if one is given."""
     now = margins_in(str(folder))
     before = [] if since is None else margins_in(f"{since}:{folder.as_posix()}")
     rows = compared(before, now)
@@ -89,7 +89,7 @@ def _row(document: Mapping[str, Any]) -> str:
 
 
 def _worse(verdict: Mapping[str, Any]) -> str:
-    """Format what decreased; results of earlier versions hold only the loss."""
+    """Describe what decreased; results of earlier versions have only the loss."""
     if verdict.get("because") == ["success"]:
         before, after = (float(verdict["success"][world]) for world in ("offline", "online"))
         return f"success {percent(after)} instead of {percent(before)} (p = {verdict['p_failures']:.2g})"

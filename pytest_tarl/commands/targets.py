@@ -16,7 +16,7 @@ from pytest_tarl.patching.patched_files import located
 
 @dataclass(frozen=True)
 class Target:
-    """A file to be changed, with the changes of each patch."""
+    """A file to change, with the changes of each patch."""
 
     path: Path
     project: Path
@@ -26,12 +26,12 @@ class Target:
 
     @property
     def as_searched(self) -> bool:
-        """Return whether the file has the text of its patches."""
+        """Return whether the file still has the text for which its patches were made."""
         return all(identical(self.content, file.before) for _, file in self.parts)
 
     @property
     def done(self) -> bool:
-        """Return whether the file has one patch and already contains its result."""
+        """Return whether the file has one patch, and already contains its result."""
         return len(self.parts) == 1 and identical(self.content, self.parts[0][1].after)
 
 

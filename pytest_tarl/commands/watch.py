@@ -19,7 +19,7 @@ from pytest_tarl.printable import print_lines, printable, printable_line
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
-TOLD = 1.0  # maximum time (s) between two reports while the watch catches up with unread missions
+TOLD = 1.0  # maximum seconds between two reports while unread missions are being processed
 
 
 @dataclass(frozen=True)
@@ -32,17 +32,18 @@ class Order:
     json: Path | None = None
     alpha: float = 0.05
     seed: int = 0
-    interval: float = 1.0  # time between two reads of the logs (s)
-    every: float = 60.0  # time between two lines of output (s)
+    interval: float = 1.0  # seconds between two reads of the logs
+    every: float = 60.0  # seconds between two lines of output
     once: bool = False
     until_alarm: bool = False
-    ros: str = ""  # library that publishes diagnostics: "rospy" or "rclpy"
+    ros: str = ""  # library for publishing diagnostics: "rospy" or "rclpy"
 
 
 def run(order: Order) -> int:
-    """Watch until an end condition holds. Return 1 after an alarm, 130 if Ctrl-C interrupts `once`, and 0 otherwise.
+    """Watch until an end condition. Return 1 after an alarm, 130 if Ctrl-C interrupts `once`, otherwise 0.
 
-    Raise LogError if a log cannot be read under `once`; FixtureError, MonitorError or SettingsError for invalid input.
+    Raise LogError if a log cannot be read with `once`, and FixtureError, MonitorError or SettingsError for invalid
+    input.
     """
     _check(order)
     with watch_state.locked(order.state), _stopped() as stopped:
@@ -59,12 +60,12 @@ def run(order: Order) -> int:
 
 
 def default_state(fixture: Path) -> Path:
-    """Return the default path of a watch's state."""
+    """Return the default path for a watch's state."""
     return Path(".tarl/watch") / f"{fixture.stem}.npz"
 
 
 class Teller:
-    """Read the logs and print results: alarms and problems immediately, others at intervals."""
+    """Read the logs and print results: alarms and problems at once, the rest at intervals."""
 
     def __init__(self, order: Order, watched: Watch, stopped: Event) -> None:
         self.order = order
@@ -75,7 +76,7 @@ class Teller:
         self._problems: tuple[str, ...] = ()
 
     def look(self) -> Status:
-        """Read new missions until an end condition holds; return the status."""
+        """Read new missions until an end condition; return the status."""
         for _ in self.watch.poll():
             if monotonic() - self._looked > TOLD:
                 self._tell(self.watch.status())
@@ -87,7 +88,7 @@ class Teller:
         return status
 
     def ending(self, status: Status) -> bool:
-        """Return whether an end condition holds."""
+        """Return whether an end condition is met."""
         return self.stopped.is_set() or (self.order.until_alarm and status.alarm)
 
     def _tell(self, status: Status) -> None:
@@ -129,7 +130,7 @@ class Teller:
 
 
 def _follow(teller: Teller) -> int:
-    """Read the logs repeatedly until an alarm (with --until-alarm), Ctrl-C or SIGTERM."""
+    """Read the logs again and again, until an alarm (with --until-alarm), Ctrl-C or SIGTERM."""
     order = teller.order
     if not order.ros:
         status = teller.look()
@@ -149,7 +150,7 @@ def _follow(teller: Teller) -> int:
 
 @contextmanager
 def _stopped() -> Iterator[Event]:
-    """Let Ctrl-C and SIGTERM end a watch only between portions of a log."""
+    """Let Ctrl-C and SIGTERM stop a watch only between portions of a log."""
     stopped = Event()
 
     def stop(_number: int, _frame: object) -> None:

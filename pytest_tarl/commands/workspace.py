@@ -11,14 +11,14 @@ from tarl_lint.workspace.examination import Examined, examined
 from tarl_lint.workspace.model import Package, Problem, Workspace
 from tarl_lint.workspace.read import read
 
-FORMAT_VERSION = 1  # new keys do not change the version
-WIDEST = 44  # maximum number of characters of a list in the table; the JSON output has the whole list
-LONGEST = 100  # the same for a list below the table
+FORMAT_VERSION = 1  # new keys do not increase the version
+WIDEST = 44  # maximum characters of a list in the table; the JSON has the whole list
+LONGEST = 100  # maximum characters of a list below the table
 HEADINGS = ("package", "kind", "nodes and scripts", "C++ nodes", "launch files", "not read")
 
 
 def described(folder: Path) -> Examined:
-    """Read the workspace below a folder. Raise SettingsError if there is no folder or no package."""
+    """Read the workspace in a folder. Raise SettingsError if there is no folder or no package."""
     if folder.is_file():
         raise SettingsError(f"{folder}: this is a file. Name the folder of a workspace.")
     if not folder.is_dir():
@@ -32,7 +32,7 @@ def described(folder: Path) -> Examined:
 
 
 def table(found: Examined) -> Iterator[str]:
-    """Yield the table, foreign nodes and unreadable files."""
+    """Yield the table, then foreign nodes and unreadable files."""
     workspace = found.workspace
     rows = [HEADINGS, *map(_row, workspace.packages)]
     optional = HEADINGS.index("C++ nodes")
@@ -55,7 +55,7 @@ def table(found: Examined) -> Iterator[str]:
 
 
 def _elsewhere(found: Examined) -> Iterator[str]:
-    """Yield the number of C++ nodes, what is outside the workspace, and what only the robot knows."""
+    """Yield the number of C++ nodes, what is outside the workspace, and what is known only on the robot."""
     compiled = sum(len(one.compiled) + len(one.components) for one in found.workspace.packages)
     lines = [f"C++ nodes: {compiled} (known by interface only)"] if compiled else []
     if found.foreign:
@@ -102,7 +102,7 @@ def _row(package: Package) -> tuple[str, ...]:
 
 
 def _shortened(names: Sequence[str], most: int = WIDEST) -> str:
-    """Return as many names as fit, and how many were omitted."""
+    """Return as many names as fit, and the number of those left out."""
     shown: list[str] = []
     for name in names:
         if shown and len(", ".join([*shown, name])) > most:
