@@ -1,1 +1,1 @@
-"""Symptoms: signs in recorded values that suggest which structural change of the code compensates a drift."""
+"""Symptoms: signs in recorded values that a certain structural change of the code could compensate the drift."""

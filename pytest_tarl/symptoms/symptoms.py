@@ -1,7 +1,7 @@
-"""The symptoms, each a function of a statement's series in a few mission pairs.
+"""The symptoms: each is a function of a statement's series in a few mission pairs.
 
-A symptom returns its strength from 0 (no sign of it) to 1. Values are compared with the designed missions, because a
-program may also be noisy or swing in the designed world.
+A symptom returns its strength, from 0 (no sign) to 1. Values are compared with the designed missions, because a program
+may be noisy or swing even in the designed world.
 """
 
 from __future__ import annotations
@@ -17,23 +17,22 @@ from pytest_tarl.symptoms.series import Pair, Series, scale
 Symptom = Callable[[Sequence[Pair]], float]
 
 TALL = 0.25  # minimum height of a spike, as a share of the range of the values
-BACK = 0.5  # maximum change across a spike, as a share of its height
-SPIKES = 0.04  # the strength is 1 if the share of spikes grows by at least this
-ROUGH = 0.01  # roughness up to this share of the range of the values is ignored
-# noise has a strength above 0 if the roughness grows by more than the first factor, and strength 1 from the second
-# factor on
+BACK = 0.5  # maximum change from before to after a spike, as a share of its height
+SPIKES = 0.04  # strength 1 if the share of spikes grows by at least this
+ROUGH = 0.01  # roughness is ignored up to this share of the range of the values
+# factors by which the roughness grows: noise has a strength above 0 from the first on, and 1 from the second on
 ROUGHER = (1.5, 6.0)
-SWITCHES = 0.1  # the strength is 1 if the share of steps with a switch grows by at least this
-JUMP = 0.4  # minimum change from one value to the next that counts as a jump, as a share of the range
-SOON = 5  # maximum number of steps from a jump to the loss that it causes
-LOSS = 0.02  # minimum additional loss of a step that counts, as a share of a designed mission's reward
+SWITCHES = 0.1  # strength 1 if the share of steps with a switch grows by at least this
+JUMP = 0.4  # minimum change between two successive values to count as a jump, as a share of the range
+SOON = 5  # maximum number of steps from a jump to a loss caused by it
+LOSS = 0.02  # minimum additional loss of a step to count, as a share of a designed mission's reward
 STEADY = 0.02  # a standard deviation at the end of a mission is ignored up to this share of the range
-# a swing has a strength above 0 if this standard deviation grows by more than the first factor, and strength 1 from the
-# second factor on
+# factors by which this standard deviation grows: a swing has a strength above 0 from the first on, and 1 from the
+# second on
 SWINGS = (2.0, 6.0)
-CROSSINGS = 3  # minimum number of times that a swing crosses its mean
-ASIDE = 0.5  # an offset has strength 1 if the mean at the end grows by at least this share of the range
-# an offset has strength 1 if values at the same time of a mission differ by at least this share of the range
+CROSSINGS = 3  # a swing crosses its mean at least this many times
+ASIDE = 0.5  # strength 1 of an offset if the mean at the end grows by at least this share of the range
+# strength 1 of an offset if values at the same time of a mission differ by at least this share of the range
 BESIDE = 0.25
 GROWTH = 0.2  # a runaway has strength 1 if (end - start) / (end + start) grows by at least this
 PAST = 0.1  # an overshoot has strength 1 if the share by which a value passes zero grows by at least this
@@ -69,10 +68,11 @@ def chatter(pairs: Sequence[Pair]) -> float:
 
 
 def jumps(pairs: Sequence[Pair]) -> float:
-    """Return how much likelier losses are soon after a jump of the value.
+    """Return how much likelier losses become soon after a jump of the value.
 
-    A value that also jumps without a loss does not cause the losses. From the share of losses with a jump in the `SOON`
-    steps before them, the same share of all steps of the designed missions is therefore subtracted.
+    A value that also jumps without losses does not cause them. The result is therefore a difference: the share of
+    losses that have a jump in the `SOON` steps before them, minus the same share for all steps of the designed
+    missions.
     """
     height = JUMP * max(scale(pairs), max((_largest(pair.designed.values) for pair in pairs), default=0.0))
     after, usual = [], []
@@ -86,7 +86,7 @@ def jumps(pairs: Sequence[Pair]) -> float:
 def offset(pairs: Sequence[Pair]) -> float:
     """Return how far the value stays on one side of zero in the second half, unlike in the designed world.
 
-    The value may also swing in the designed world, for example while a vehicle follows its course. A lasting offset
+    The value may swing in the designed world as well, for example while a vehicle follows its course. A lasting offset
     then shows in the differences from the designed missions at the same time.
     """
     both = [pair.together() for pair in pairs]
@@ -121,7 +121,7 @@ def runaway(pairs: Sequence[Pair]) -> float:
 
 
 def overshoot(pairs: Sequence[Pair]) -> float:
-    """Return how much farther values go to the other side of zero than in the designed missions.
+    """Return how much farther than in the designed missions values go beyond zero to the other side.
 
     A mission may end because of an overshoot, before the value can swing.
     """
@@ -160,7 +160,7 @@ RECEIVED = ("noise", "spikes")  # symptoms that are treated where a value is rec
 
 
 def losses(pair: Pair) -> list[int]:
-    """Return the steps of the drifted mission that lose more than any step of the designed one."""
+    """Return the drifted mission's steps that lose more than any step of the designed one."""
     designed = pair.designed.reward
     if not designed.size:
         return []
@@ -169,13 +169,13 @@ def losses(pair: Pair) -> list[int]:
 
 
 def _more(pairs: Sequence[Pair], share: Callable[[Series], float], certain: float) -> float:
-    """Return the growth of a share, divided by `certain`, the growth that gives strength 1."""
+    """Return the growth of a share, divided by `certain`, the growth for strength 1."""
     grown = fmean(share(pair.drifted) for pair in pairs) - fmean(share(pair.designed) for pair in pairs)
     return float(np.clip(grown / certain, 0.0, 1.0))
 
 
 def _grown(before: float, after: float, growth: tuple[float, float]) -> float:
-    """Return where the ratio after / before lies between the two factors in `growth`, on a log scale from 0 to 1."""
+    """Return the position of the ratio after / before between the factors in `growth`: 0 to 1 on a log scale."""
     if before <= 0.0 or after <= 0.0:
         return 0.0
     low, high = np.log(growth)
@@ -201,9 +201,9 @@ def _switches(above: np.ndarray) -> float:
 
 
 def _soon(series: Series, height: float) -> np.ndarray:
-    """Return for each step whether the value jumped in it or in the `SOON` steps before, boolean of shape (steps,)."""
+    """Return for each step whether the value jumped in it or in the `SOON` steps before; shape (steps,)."""
     found = np.zeros(len(series.reward), dtype=bool)
-    # the first value counts as a jump from zero, such as a command to a robot at rest
+    # the first value counts as a jump from zero, like a command to a robot at rest
     jumped = np.abs(np.diff(series.values, prepend=0.0)) >= height
     for step in set(series.step[jumped].tolist()):
         found[step : step + SOON + 1] = True
@@ -217,9 +217,9 @@ def _largest(values: Floats) -> float:
 def _apart(pair: Pair, size: float) -> float:
     """Return how far a value stays on one side of its designed course in the second half, away from zero.
 
-    An offset has strength 1 if the difference is at least the share `BESIDE` of the range of the values, and at least
-    their root mean square in the designed world. Only values that swing in the designed world are examined; for other
-    values, the mean is enough.
+    Strength 1 requires a difference of at least the share `BESIDE` of the range of the values, and of at least their
+    root mean square in the designed world. Only values that swing in the designed world are examined; for others, the
+    mean is enough.
     """
     steps = min(pair.designed.values.size, pair.drifted.values.size)
     designed, drifted = (_late(one.values[:steps]) for one in (pair.designed, pair.drifted))
@@ -231,7 +231,7 @@ def _apart(pair: Pair, size: float) -> float:
 
 
 def _past_zero(values: Floats) -> float:
-    """Return the largest value on the other side of zero, relative to the largest one on the side of the start.
+    """Return the largest value beyond zero, relative to the largest value on the side of the start.
 
     A median of three removes single outliers.
     """
@@ -246,13 +246,13 @@ def _late(values: Floats) -> Floats:
 
 
 def _one_sided(values: Floats) -> float:
-    """Return |mean| / root mean square: 1 for values that are all equal, 0 if they lie evenly around zero."""
+    """Return |mean| / root mean square: 1 if all values are equal, 0 if they lie evenly around zero."""
     size = float(np.sqrt((values**2).mean())) if values.size else 0.0
     return abs(float(values.mean())) / size if size else 0.0
 
 
 def _smoothness(values: Floats) -> float:
-    """Return the correlation of successive values, or 0 if they cross their mean fewer than `CROSSINGS` times."""
+    """Return the correlation of successive values; 0 if they cross their mean fewer than `CROSSINGS` times."""
     around = values - values.mean()
     spread = float((around**2).mean())
     if not spread or int((around[1:] * around[:-1] < 0.0).sum()) < CROSSINGS:
@@ -267,7 +267,7 @@ def _slowness(values: Floats) -> float:
 
 
 def _growth(values: Floats) -> float:
-    """Return (end - start) / (end + start) of the mean size in the last and the first third of the values."""
+    """Return (end - start) / (end + start), for the mean size in the last and the first third of the values."""
     if values.size < FEWEST:
         return 0.0
     part = values.size // 3
