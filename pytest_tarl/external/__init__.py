@@ -1,6 +1,6 @@
 """Use a simulator on a real ROS as the world of a test.
 
-`guardian.py` is a further process, which starts, monitors and kills the simulator, and exchanges messages with it.
-`client.py` is the test's connection to the guardian. `simulator.py` runs the nodes and the simulator together. The
-nodes may use any ROS.
+`guardian.py` is a separate process that starts, monitors and kills the simulator, and exchanges messages with it.
+`client.py` is the test's connection to the guardian. `simulator.py` runs nodes and simulator together. The nodes may
+use any ROS.
 """

@@ -15,7 +15,7 @@ from pytest_tarl.errors import SettingsError
 
 @dataclass(frozen=True)
 class Call:
-    """A service of the simulator and the fields of its request; the simulator determines the type."""
+    """A service of the simulator, with the fields of its request; the simulator determines the type."""
 
     service: str
     request: Mapping[str, Any] = field(default_factory=dict)
@@ -23,7 +23,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Setup:
-    """The checked arguments of `tarl.external`, which documents them."""
+    """The checked arguments of `tarl.external` (see its documentation)."""
 
     command: tuple[str, ...]
     folder: Path
@@ -39,7 +39,7 @@ class Setup:
 
     @property
     def shown(self) -> str:
-        """Return the command as one would type it in a shell."""
+        """Return the command as typed in a shell."""
         return shlex.join(self.command)
 
 
@@ -56,7 +56,7 @@ def setup(
     timeout: float,
     patience: float,
 ) -> Setup:
-    """Return checked arguments. Raise SettingsError."""
+    """Check the arguments and return them. Raise SettingsError."""
     parts = shlex.split(command) if isinstance(command, str) else [os.fspath(part) for part in command]
     topics = (ready,) if isinstance(ready, str) else tuple(ready)
     if not parts or not topics:
@@ -80,7 +80,7 @@ def setup(
 
 
 def _generation() -> str:
-    """Return the installed ROS. Raise SettingsError without one."""
+    """Return the installed ROS. Raise SettingsError if there is none."""
     for library, name in (("rclpy", "ros2"), ("rospy", "ros1")):
         if PathFinder.find_spec(library) is not None:
             return name

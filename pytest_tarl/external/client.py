@@ -1,4 +1,4 @@
-"""The test's connection to the guardian process of a simulator."""
+"""The test's connection to a simulator's guardian process."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from time import monotonic
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
-PATIENCE = 30.0  # maximum time until the guardian has ended (s); longer than the guardian's own limits
-TAIL = 3  # maximum number of lines of the simulator's output in a message
+PATIENCE = 30.0  # seconds to wait for the guardian to end; longer than the guardian's own limits
+TAIL = 3  # maximum lines of simulator output in a message
 
 Event = dict[str, Any]
 
 
 class Client:
-    """One guardian process, which serves one simulator after another."""
+    """A guardian process, which runs one simulator after another."""
 
     def __init__(self) -> None:
         self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process runs
@@ -43,7 +43,7 @@ class Client:
 
     @property
     def alive(self) -> bool:
-        """Return whether the guardian runs."""
+        """Return whether the guardian is running."""
         return self._process.poll() is None
 
     def do(self, what: str, **arguments: Any) -> None:
@@ -83,14 +83,14 @@ class Client:
         return new.decode(errors="replace")
 
     def last_words(self) -> str:
-        """Return the last lines of the output without consuming them."""
+        """Return the last lines of the output, without consuming them."""
         lines = self._unread().decode(errors="replace").strip().splitlines()
         return " | ".join(line.strip() for line in lines[-TAIL:])
 
     def _unread(self) -> bytes:
         with suppress(
             OSError, ValueError
-        ):  # pread does not move the file offset at which the simulator writes
+        ):  # pread leaves the file offset alone, at which the simulator writes
             size = os.fstat(self._log.fileno()).st_size
             return os.pread(self._log.fileno(), size - self._shown, self._shown)
         return b""

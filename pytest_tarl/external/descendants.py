@@ -18,7 +18,7 @@ _IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def outlive_the_test() -> None:
-    """Ignore the signals that end the test; this process outlives it."""
+    """Ignore the signals that end the test, because this process must outlive it."""
     for number in _IGNORED:
         signal.signal(number, signal.SIG_IGN)
 
@@ -30,12 +30,12 @@ def adopt() -> None:
 
 
 def adopted() -> list[int]:
-    """Return the running children of this process, in the order of their ids."""
+    """Return the running children of this process, sorted by id."""
     if not _LINUX:
         return []
     found = []
     for path in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):  # the process has ended in the meantime
+        with suppress(OSError):  # the process has just ended
             state, parent = path.read_text(errors="replace").rpartition(")")[2].split()[:2]
             if int(parent) == os.getpid() and state not in "ZX":
                 found.append(int(path.parent.name))
@@ -43,20 +43,19 @@ def adopted() -> list[int]:
 
 
 def reap(which: int) -> None:
-    """Collect exit statuses: of all children for -1, or of group n for -n."""
+    """Collect exit statuses: of all children for -1, of the group n for -n."""
     with suppress(ChildProcessError):
         while os.waitpid(which, os.WNOHANG)[0]:
             pass
 
 
 def die_with_parent() -> Callable[[], None]:
-    """Return a function that a new child calls before exec.
+    """Return a function for a new child to call before exec.
 
-    The function restores default signals, and makes the kernel send SIGKILL to the child when this process
-    ends.
+    The function restores default signals, and makes the kernel kill the child when this process ends.
 
-    The C library is loaded before the fork: if another thread held the loader's lock during the fork, the child would
-    wait for it forever.
+    The C library is loaded before the fork. If another thread held the loader's lock during the fork, the child would
+    otherwise wait for it forever.
     """
     prctl = ctypes.CDLL(None).prctl if _LINUX else None
     parent = os.getpid()
@@ -74,7 +73,7 @@ def die_with_parent() -> Callable[[], None]:
 
 
 def wait_for_end_of_parent() -> None:
-    """Wait for the end of this process's parent. Raise OSError if that is impossible."""
+    """Wait until this process's parent ends. Raise OSError if the system does not support this."""
     if sys.platform != "linux":
         raise OSError
     parent = os.pidfd_open(os.getppid())

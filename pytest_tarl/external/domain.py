@@ -1,4 +1,4 @@
-"""A ROS domain for one simulator, claimed on this machine."""
+"""Claim a ROS domain on this machine for one simulator."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import socket
 import sys
 from contextlib import suppress
 
-DOMAINS = range(1, 101)  # the ports of these domains are below the kernel's ephemeral range
+DOMAINS = range(1, 101)  # domains whose ports are below the kernel's ephemeral range
 
 
 class Domain:
-    """A ROS domain of this guardian, claimed until the process ends."""
+    """A ROS domain that this guardian claims until the process ends."""
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.number = 0
         candidates = random.SystemRandom().sample(DOMAINS, len(DOMAINS))
         if not sys.platform.startswith("linux"):
-            # this system has no abstract sockets, with which a process could claim a domain for itself
+            # without abstract sockets, this system has no way to claim a domain
             self.number = candidates[0]
             return
         for number in candidates:
@@ -29,5 +29,5 @@ class Domain:
         raise OSError(f"all {len(DOMAINS)} ROS domains are in use")
 
     def release(self) -> None:
-        """Release the claim on the domain."""
+        """Release the domain."""
         self._socket.close()

@@ -11,20 +11,19 @@ from time import monotonic, sleep
 
 from pytest_tarl.external.descendants import adopt, adopted, die_with_parent, reap
 
-PERIOD = 0.01  # time between two checks of the group (s)
+PERIOD = 0.01  # seconds between two checks of the group
 STEPS = (
     (signal.SIGINT, 2.0),
     (signal.SIGTERM, 1.0),
     (signal.SIGKILL, 5.0),
-)  # (signal, time (s) that the processes then have to end)
+)  # (signal, seconds for the processes to end)
 
 
 class Group:
     """A command in its own process group, so that all processes that it starts can be killed.
 
-    The output of the command goes to stderr. On Linux, this process adopts the group's orphans. This process
-    reaps the orphans itself, because the init process of a container may not do so, and it also kills
-    processes that left the group.
+    The command's output goes to stderr. On Linux, this process adopts the group's orphans and reaps them itself,
+    because the init process of a container may not do so. It also kills processes that left the group.
     """
 
     def __init__(self, command: Sequence[str], folder: str, environment: Mapping[str, str]) -> None:
@@ -42,13 +41,13 @@ class Group:
 
     @property
     def status(self) -> int | None:
-        """Return the exit status of the command, or None while it runs."""
+        """Return the command's exit status, or None while it is running."""
         return self._process.poll()
 
     def end(self) -> None:
         """End the group's processes with SIGINT, then SIGTERM, then SIGKILL.
 
-        Processes that left the group get SIGKILL.
+        Processes that left the group only get SIGKILL.
         """
         for number, limit in STEPS:
             self._send(number)
@@ -74,7 +73,7 @@ class Group:
             os.killpg(self._process.pid, number)
 
     def _alive(self) -> bool:
-        """Return whether a process of the group runs, except ended ones."""
+        """Return whether any process of the group is still running."""
         if self._process.poll() is None:
             return True
         reap(-self._process.pid)

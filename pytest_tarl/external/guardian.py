@@ -1,8 +1,8 @@
 """The guardian: a process that runs a simulator.
 
-The guardian reads commands and writes events, each a JSON line.
+The guardian reads commands and writes events, one JSON line each.
 
-The simulator's processes are ended on a command of the test, or when the test's process has ended.
+It ends the simulator's processes when the test asks for it, or when the test's process has ended.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from pytest_tarl.external.link import Link
 from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
-LOOK = 0.05  # time between two checks of the ROS graph in the first CALM seconds (s); later 1 s
-CALM = 5.0  # time during which the ROS graph is checked every LOOK seconds (s)
-LAST = 20.0  # time after the end of the test when a hanging simulator is killed (s)
+LOOK = 0.05  # seconds between two checks of the ROS graph during the first CALM seconds; later 1 s
+CALM = 5.0  # seconds during which the ROS graph is checked every LOOK seconds
+LAST = 20.0  # seconds after the end of the test until a hanging simulator is killed
 
 
 class Guardian:
@@ -38,7 +38,7 @@ class Guardian:
         self._events = os.fdopen(events, "w", buffering=1, encoding="utf-8")
         self._commands: deque[dict[str, Any] | None] = deque()
         self._arrival = threading.Event()
-        self._waking = threading.Lock()  # held while another thread wakes a link or removes one
+        self._waking = threading.Lock()  # held while another thread wakes or removes a link
         self._group: Group | None = None
         self._domain: Domain | None = None
         self._master: Master | None = None
@@ -51,15 +51,15 @@ class Guardian:
         try:
             for line in sys.stdin:
                 self._put(json.loads(line))
-        except ValueError:  # the test was killed while it wrote a line
+        except ValueError:  # the test was killed in the middle of a line
             pass
         finally:
             self._finish()
 
     def watch(self) -> None:
-        """Wait for the end of the test's process; runs in a thread.
+        """Wait until the test's process ends; runs in a thread.
 
-        Forked children of the test may keep stdin open, so the end of stdin does not show that the test has ended.
+        The end of stdin does not show this, because forked children of the test may keep stdin open.
         """
         try:
             wait_for_end_of_parent()
@@ -145,7 +145,7 @@ class Guardian:
         self._link.subscribe(topics)
 
     def _network(self, ros: str) -> dict[str, str]:
-        """Return the environment of the simulator's private network."""
+        """Return the environment for the simulator's private network."""
         if ros == "ros1":
             self._master = Master()
             with xmlrpc.client.ServerProxy(self._master.uri) as master:
@@ -188,7 +188,7 @@ class Guardian:
 
 
 def main() -> None:
-    """Reserve stdout for events and outlive the test."""
+    """Reserve stdout for events, and outlive the test."""
     outlive_the_test()
     events = os.dup(1)
     os.dup2(2, 1)
@@ -200,4 +200,4 @@ def main() -> None:
     except Exception:
         traceback.print_exc()
         os._exit(1)
-    os._exit(0)  # end without waiting for threads of the middleware
+    os._exit(0)  # do not wait for threads of the middleware

@@ -1,4 +1,4 @@
-"""A simulator that runs on and is reset for later episodes."""
+"""A simulator that keeps running and is reset for later episodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Kept:
         self.running: Setup | None = None
 
     def opened(self) -> Client:
-        """Return the guardian; start it on first use."""
+        """Return the guardian, which starts when first needed."""
         if self.client is None or not self.client.alive:
             self.close()
             self.client = Client()

@@ -15,16 +15,16 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-# The queue counts as empty after this number of consecutive attempts without a message. One attempt is not enough,
-# because it may have handled another event.
+# the queue counts as empty after this many attempts in a row without a message; a single attempt may have handled
+# another event
 IDLE = 3
 UNKNOWN = (
     # rclpy's name for a node of which only an endpoint is known
     "_NODE_NAME_UNKNOWN_"
 )
-# maximum time until a node's name is known (s); other programs never get a name
+# seconds to wait for a node's name; programs other than nodes never get one
 NAMING = 10.0
-# maximum time for a node to answer a parameter request (s); slower nodes are not asked again
+# seconds for a node to answer a parameter request; a slower node is not asked again
 ASKING = 10.0
 
 Say = Callable[[dict[str, Any]], None]
@@ -32,7 +32,7 @@ Say = Callable[[dict[str, Any]], None]
 
 @dataclass(frozen=True)
 class Turn:
-    """A call of a parameter service, with a limit and a continuation."""
+    """A call of a parameter service, with a time limit and what to do next."""
 
     service: str
     deadline: float
@@ -40,7 +40,7 @@ class Turn:
 
 
 class Link:
-    """A node in its own context, which passes events to `say`; use it in one thread."""
+    """A node in its own context that passes events to `say`; use it from one thread."""
 
     def __init__(self, domain: int, clock: str, say: Say) -> None:
         from rclpy.context import Context
@@ -64,22 +64,20 @@ class Link:
         self._publishers: dict[str, Any] = {}
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
-        self._receivers: dict[
-            str, list[str]
-        ] = {}  # topic → parameter services of the nodes that subscribe to it
+        self._receivers: dict[str, list[str]] = {}  # topic → parameter services of its subscribers
         self._seen: dict[str, float] = {}  # topic → when a subscription to it was first seen
-        self._asking: Turn | None = None  # the call of a parameter service that has not been answered yet
+        self._asking: Turn | None = None  # the call of a parameter service that is waiting for its answer
         self._silent: set[str] = set()  # parameter services that did not answer in time
         self._sent: Counter[str] = Counter()  # topic → number of commands since the last call
         self._known: dict[str, Any] = {}
-        # answers of services that were not passed on to the test yet
+        # answers of services that the test has not received yet
         self._answers: list[dict[str, Any]] = []
         self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
-        """Wait up to `seconds` for an event; handle earlier messages before it.
+        """Wait up to `seconds` for an event; handle messages that arrived before it first.
 
-        In each cycle, rclpy's executor takes one message from each subscription and then the answers. An answer can
+        In each cycle, rclpy's executor takes one message from each subscription, and then the answers. An answer can
         therefore overtake the second message on a topic, which may be the state after a step.
         """
         self._executor.spin_once(seconds)
@@ -119,13 +117,15 @@ class Link:
     def call(self, asked: dict[str, Any]) -> None:
         """Call a service after the simulator has handled all commands.
 
-        Commands arrive before the call, because both go by UDP to one port of the simulator's participant. That is not
-        enough. In each cycle, an executor looks for messages, then for requests, and takes one message from each
+        Commands arrive before the call, because both go by UDP to the same port of the simulator's participant. This is
+        not enough: in each cycle, an executor looks for messages, then for requests, and takes one message from each
         subscription. It can therefore miss a command that arrives in between, or handle the request before the second
-        command on a topic. To prevent this, each node that subscribes to the commands first gets an empty parameter
-        request for each command. Once the node has answered all of them, its executor has taken the last command before
-        it finds the call. Nodes that have no parameter services or do not answer are skipped. Waiting for
-        acknowledgements would not be enough, and would cost 0.8 s per call, the period of the middleware's heartbeats.
+        command on a topic.
+
+        For this reason, each node that subscribes to the commands first gets one empty parameter request per command.
+        Once it has answered them all, its executor has taken the last command before it finds the call. Nodes without
+        parameter services and nodes that do not answer are skipped. Waiting for acknowledgements would not be enough,
+        and would take 0.8 s per call (the period of the middleware's heartbeats).
         """
         self._calls.append(asked)
         self._start_calls()
@@ -177,7 +177,7 @@ class Link:
             self._handled += 1
             sent = info[
                 "source_timestamp"
-            ]  # time of sending (ns) by this machine's clock; 0 if the middleware does not state it
+            ]  # time of sending by this machine's clock (ns); 0 if the middleware does not provide it
             self._say(
                 {"kind": "message", "topic": topic, "type": kind, "data": to_plain(message), "sent": sent}
             )
@@ -205,7 +205,7 @@ class Link:
             self._ask(names, partial(self._start, client, asked))
 
     def _asked_first(self) -> list[str]:
-        """Return the parameter services to call, once per command sent to their nodes."""
+        """Return the parameter services to call: one call for each command sent to their nodes."""
         times = Counter[str]()
         for topic, commands in self._sent.items():
             for name in self._receivers.get(topic, ()):
@@ -216,7 +216,7 @@ class Link:
         return [name for name in asked for _ in range(times[name])]
 
     def _ask(self, names: list[str], then: Callable[[], None]) -> None:
-        """Call the parameter services one after the other, then call `then`."""
+        """Call the parameter services one by one, then call `then`."""
         self._asking = None
         names = [name for name in names if name not in self._silent]
         if not names:
@@ -232,7 +232,7 @@ class Link:
             turn.then()
 
     def _skip_silent(self) -> None:
-        """Continue without a node that does not answer."""
+        """Go on without a node that does not answer."""
         turn = self._asking
         if turn is not None and monotonic() > turn.deadline:
             self._silent.add(turn.service)
@@ -261,7 +261,7 @@ class Link:
 
 
 def _parameters(end: Any) -> str:
-    """Return the name of the service through which a node returns its parameters."""
+    """Return the name of the service by which a node returns its parameters."""
     return f"{end.node_namespace.rstrip('/')}/{end.node_name}/get_parameters"
 
 

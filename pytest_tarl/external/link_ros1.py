@@ -21,19 +21,19 @@ from pytest_tarl.processors import available
 NAME = "/tarl_link"
 OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
-LOST = "transport error"  # the start of rospy's error message for a broken connection
-PATIENCE = 5.0  # maximum time until a service reports its type (s)
-READING = 10.0  # maximum time until the simulator has read all commands (s)
-LOOK = 0.001  # time between two checks of the bytes that the simulator has not read (s)
-# pause (s) between a command and a service call on an idle machine; without it, the call could arrive first, because it
-# has its own connection
+LOST = "transport error"  # how rospy's error message for a broken connection starts
+PATIENCE = 5.0  # seconds for a service to report its type
+READING = 10.0  # seconds for the simulator to read all commands
+LOOK = 0.001  # seconds between two checks for unread bytes
+# seconds between a command and a service call on an idle machine; the call has its own connection, so it could
+# otherwise arrive first
 PAUSE = 0.005
 
 Say = Callable[[dict[str, Any]], None]
 
 
 def _pause() -> float:
-    """Return the pause before a service call, longer on a busy machine."""
+    """Return the pause before a service call, which is longer on a busy machine."""
     try:
         waiting = os.getloadavg()[0] / available()
     except OSError:
@@ -42,7 +42,7 @@ def _pause() -> float:
 
 
 class LinkROS1:
-    """The only rospy node of the process, which passes events to `say`; use it in one thread."""
+    """The only rospy node of the process; it passes events to `say`. Use it from one thread."""
 
     def __init__(self, clock: str, say: Say) -> None:
         import rosgraph
@@ -63,7 +63,7 @@ class LinkROS1:
         self._sent = False  # whether a command was sent since the last service call
 
     def spin(self, seconds: float) -> None:
-        """Pass on messages that have arrived or that arrive within `seconds`."""
+        """Pass on messages that have arrived, or arrive within `seconds`."""
         self._arrival.wait(seconds)
         self._arrival.clear()
         while self._events:
@@ -96,8 +96,8 @@ class LinkROS1:
     def call(self, asked: dict[str, Any]) -> None:
         """Call a service now, or as soon as it exists.
 
-        First wait until the simulator has read all commands sent so far. Then pause, so that it also handles them
-        before the call.
+        First wait until the simulator has read all commands sent so far; then pause, so that it handles them before the
+        call.
         """
         if self._sent:
             deadline = monotonic() + READING
@@ -109,10 +109,10 @@ class LinkROS1:
         self._start_calls()
 
     def _connections(self) -> Iterator[tuple[int, int]]:
-        """Yield, for each connection for commands, this process's port and the simulator's port."""
+        """Yield (own port, simulator's port) for each connection that carries commands."""
         for publisher in self._publishers.values():
             for connection in list(publisher.impl.connections):
-                with suppress(OSError, AttributeError):  # closed in the meantime
+                with suppress(OSError, AttributeError):  # the connection was just closed
                     yield connection.socket.getsockname()[1], connection.socket.getpeername()[1]
 
     def look(self) -> None:
@@ -121,7 +121,7 @@ class LinkROS1:
             publishing, subscribing, _ = self._master.getSystemState()
             kinds = dict(self._master.getTopicTypes())
         except OSError:
-            return  # the simulator has ended, and with it the ROS master
+            return  # the simulator has ended, and the ROS master with it
         published = [topic for topic, nodes in publishing if _others(nodes) and topic not in OWN]
         for topic in published:
             self._listen(topic, kinds.get(topic, "*"))
@@ -151,7 +151,7 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            # rospy warns without a queue, but with one, a service call could overtake the message
+            # rospy warns if there is no queue, but with a queue, a service call could overtake the message
             warnings.simplefilter("ignore", SyntaxWarning)
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 
@@ -184,7 +184,7 @@ class LinkROS1:
             told: dict[str, Any] = {"response": to_plain(proxy(request))}
         except Exception as problem:
             if str(problem).startswith(LOST):
-                return  # if the simulator ended, the guardian reports it; otherwise, the test reports a missing answer
+                return  # the guardian reports if the simulator ended, and the test reports if an answer is missing
             told = {"error": str(problem)}
         self._put({"kind": "answer", "id": asked["id"], "asked": when, **told})
 

@@ -15,7 +15,7 @@ def to_plain(value: Any) -> Any:
     kinds = _fields(value)
     if kinds is not None:
         return {name: to_plain(getattr(value, name)) for name in kinds}
-    if hasattr(value, "tolist"):  # arrays of numpy or of the module array
+    if hasattr(value, "tolist"):  # arrays of numpy or of the module `array`
         return value.tolist()
     if isinstance(value, (bytes, bytearray)):
         return list(value)
@@ -25,7 +25,7 @@ def to_plain(value: Any) -> Any:
 
 
 def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
-    """Set the fields of a message from plain data, and return it."""
+    """Set a message's fields from plain data, and return the message."""
     kinds = _fields(message) or {}
     for name, value in data.items():
         now = getattr(message, name)
@@ -42,7 +42,7 @@ def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
 
 
 def _fields(value: Any) -> Mapping[str, str] | None:
-    """Return the names and types of a message's fields, or None for other values.
+    """Return the names and types of a message's fields; None if the value is not a message.
 
     In ROS 1, times and durations count as messages.
     """

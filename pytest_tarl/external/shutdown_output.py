@@ -1,4 +1,4 @@
-"""Remove the tracebacks of SIGINT from a simulator's output."""
+"""Remove the tracebacks that SIGINT causes from a simulator's output."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ _LINK = (
 _INTERRUPTS = (
     r"(?:KeyboardInterrupt|ExternalShutdownException|ROSInterruptException|NotInitializedException)(?::.*)?"
 )
-# On SIGINT, rclpy and rospy shut down in another thread. A program that uses them at that moment, or shuts them down
-# again, gets one of these errors.
+# On SIGINT, rclpy and rospy shut down in another thread. A program gets one of these errors if it uses them at that
+# moment, or shuts them down again.
 _SHUT_DOWN = (
     r"\w+: .*(?:context is (?:not valid|invalid)|rcl_shutdown already called"
     r"|Context must be initialized before it can be shutdown|destruction was requested|publish\(\) to a closed topic).*"
@@ -22,14 +22,14 @@ _INTERRUPTED = re.compile(
     rf"^(?:{_FRAMES}[\w.]+(?::.*)?\n{_LINK})*{_FRAMES}(?:[\w.]+\.)?(?:{_INTERRUPTS}|{_SHUT_DOWN})(?:\n(?!{_LINK})|\Z)",
     re.MULTILINE,
 )
-# rclpy's handler of SIGINT wakes all executors, including those of a context that was just destroyed
+# rclpy's SIGINT handler wakes all executors, including those of a context that was just destroyed
 _HANDLING = re.compile(r"^\[\w+\] \[[\d.]+\] \[rclpy\.signals\]: .*(?:\n|\Z)", re.MULTILINE)
 
 
 def without_interrupts(output: str) -> str:
     """Remove rclpy's signal messages and the tracebacks of interrupts.
 
-    An interrupt is a KeyboardInterrupt or one of ROS's own exceptions for it. Other tracebacks remain, even if an
-    interrupt caused their exception or occurred while their exception was being handled.
+    An interrupt is a KeyboardInterrupt, or one of ROS's own exceptions for it. Other tracebacks stay, even if an
+    interrupt caused the exception or came while it was being handled.
     """
     return _INTERRUPTED.sub("", _HANDLING.sub("", output))

@@ -1,4 +1,4 @@
-"""An external simulator in an episode, whose clock the nodes follow."""
+"""An external simulator in an episode; the nodes follow its clock."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from pytest_tarl.ros.messages.snapshot import snapshot, type_name
 if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
-SETTLED = 0.3  # a simulator has started if the ROS graph did not change for this time (s of real time)
+SETTLED = 0.3  # the simulator has started once the ROS graph was unchanged for this time (s of real time)
 
 
 class Simulator:
-    """The simulator of one episode. `latest(topic)` returns its last message on a topic."""
+    """The simulator of an episode; `latest(topic)` returns its last message on a topic."""
 
     def __init__(self, setup: Setup, ros: Ros, watched: Sequence[str]) -> None:
         self.setup = setup
@@ -35,7 +35,7 @@ class Simulator:
         self._topics = dict.fromkeys((*setup.ready, *setup.every_step, *watched))
         self._heard: dict[
             str, int
-        ] = {}  # topic → time at which the newest message was sent, in ns of this machine's clock
+        ] = {}  # topic → when its newest message was sent, in ns of this machine's clock
         self._latest: dict[str, Any] = {}
         self._graph: dict[str, set[str]] = {"published": set(), "subscribed": set(), "connected": set()}
         self._forwarded: set[str] = set()
@@ -46,31 +46,31 @@ class Simulator:
         self._tick = 0
         self._waiting: (
             list[Event] | None
-        ) = []  # messages to deliver later, or None while messages are delivered immediately
-        # whether the running simulator was ready once; the graph does not tell, because a simulator that ends also
-        # leaves the graph, and this event may arrive first
+        ) = []  # messages to deliver later; None while messages are delivered at once
+        # whether the running simulator was ever ready; the graph does not tell, because a simulator also leaves it when
+        # it ends, and this event may arrive first
         self._was_ready = False
-        # whether the last step ended without an error, so the simulator can be used again
+        # whether the last step ended without an error, so that the simulator can be used again
         self._usable = False
         # whether arriving events come from the simulator of this episode
         self._current = False
 
     @property
     def clock(self) -> float:
-        """Return the simulator's time, in s."""
+        """Return the simulator's time in s."""
         return seconds(self._clock or 0)
 
     def latest(self, topic: str) -> Any | None:
-        """Return a topic's newest message from the simulator, or None.
+        """Return the simulator's newest message on a topic, or None.
 
-        If no node, sensor or argument names the topic, its messages are received only after the first call.
+        Messages of a topic that no node, sensor or argument names are received only after the first call.
         """
         if topic not in self._topics:
             self._want([topic])
         return self._latest.get(topic)
 
     def begin(self) -> None:
-        """Start or reset the simulator. Raise SimulatorError if it does not get ready."""
+        """Start or reset the simulator. Raise SimulatorError if it does not become ready."""
         if self.setup.reset is None or KEPT.running != self.setup or not self._reset(self.setup.reset):
             self._start()
         self._wait(self._ready, self.setup.timeout, self._unready)
@@ -96,7 +96,7 @@ class Simulator:
         self._usable = True
 
     def end(self) -> None:
-        """Print the simulator's output, and end it unless it can be reset."""
+        """Print the simulator's output; end the simulator unless it can be reset."""
         _print(self.setup, self._client.output())
         if self.setup.reset is None or not self._usable:
             self._stop(self.setup)
@@ -106,7 +106,7 @@ class Simulator:
         return -1 if self._clock is None else self._clock
 
     def _stop(self, running: Setup) -> None:
-        """End the running simulator, and print the output of its shutdown."""
+        """End the running simulator, and print what it writes while shutting down."""
         KEPT.running = None
         self._client.stop()
         _print(running, without_interrupts(self._client.output()), " after TARL had ended it")
@@ -115,7 +115,7 @@ class Simulator:
         one = self.setup
         if KEPT.running is not None:
             self._stop(KEPT.running)
-        # rospy connects to only one master per process, and the new simulator has a new master
+        # rospy connects to only one master per process, and a new simulator has a new master
         if one.ros == "ros1":
             KEPT.close()
             self._client = KEPT.opened()
@@ -151,7 +151,7 @@ class Simulator:
         return True
 
     def _forget(self) -> None:
-        """Forget the old time, so that the simulator is not ready at once."""
+        """Forget the old time, so that the simulator does not count as ready at once."""
         self._heard.clear()
         self._clock = None
         self._waiting = []
@@ -161,7 +161,7 @@ class Simulator:
         return self._time > 0 and all(topic in connected for topic in self.setup.ready)
 
     def _settle(self) -> None:
-        """Wait for a stable ROS graph, so that early commands arrive."""
+        """Wait until the ROS graph is stable, so that early commands arrive."""
         calm = monotonic()
         while monotonic() - calm < SETTLED:
             event = self._next(SETTLED / 4)
@@ -176,7 +176,7 @@ class Simulator:
         self._want(sorted(self._ros.bus.subscribed - {*self._topics, self.setup.clock}))
 
     def _want(self, topics: Sequence[str]) -> None:
-        """Receive further topics; wait for the connections to those that the simulator publishes."""
+        """Receive further topics; wait for connections to those that the simulator publishes."""
         if not topics:
             return
         self._topics.update(dict.fromkeys(topics))
@@ -195,7 +195,7 @@ class Simulator:
         return found
 
     def _theirs(self, message: Any) -> Any:
-        """Convert a node's message to the message class of the simulator's ROS."""
+        """Convert a node's message to the class used by the simulator's ROS."""
         package, _, name = type_name(type(message)).partition("/")
         wanted = self._class(package, name)
         return message if type(message) is wanted else snapshot(message, wanted)
@@ -215,9 +215,9 @@ class Simulator:
             self._waiting = []
 
     def _over(self, before: int, asked: int) -> bool:
-        """Return whether a step has ended, by its clock and topics.
+        """Return whether a step has ended, according to its clock and topics.
 
-        Messages that were sent before the step was requested may still arrive; they are ignored.
+        Messages sent before the step was requested may still arrive; they do not count.
         """
         return self._time > before and all(
             self._heard.get(topic, 0) >= asked for topic in self.setup.every_step
@@ -237,7 +237,7 @@ class Simulator:
             self._ros.step(seconds(until - self._ros.scheduler.time))
 
     def _call(self, call: Call) -> int:
-        """Call a service and wait; return the time of the request (ns of this machine's clock)."""
+        """Call a service and wait for it; return the time of the request (ns of this machine's clock)."""
         self._calls += 1
         number = self._calls
         self._client.do("call", id=number, service=call.service, request=dict(call.request))
@@ -253,7 +253,7 @@ class Simulator:
     def _wait(self, done: Callable[[], bool], limit: float, late: Callable[[], SimulatorError]) -> None:
         """Handle events until a condition holds.
 
-        After `limit` s without progress, raise the error that `late` returns.
+        After `limit` s without progress, raise the error returned by `late`.
         """
         deadline, progress = monotonic() + limit, self._time
         while not done():
@@ -346,7 +346,7 @@ class Simulator:
         )
 
     def _lost(self, text: str, why: str) -> SimulatorLostError:
-        """Return an error with the simulator's last line of output."""
+        """Return an error with the last line of the simulator's output."""
         last = self._client.last_words().rpartition(" | ")[2]
         return SimulatorLostError(text, f"{why} (last output: {last})" if last else why)
 

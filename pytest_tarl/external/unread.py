@@ -1,4 +1,4 @@
-"""Count sent bytes that another local process has not read."""
+"""Count the bytes that were sent to another local process, but not read by it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 def unread(connections: Iterable[tuple[int, int]]) -> int:
     """Return the number of unread bytes; 0 if it is unknown.
 
-    A connection is a pair: the own port and the other port.
+    A connection is a pair: own port, other port.
 
-    Such bytes are in the send queue of the own end, or in the receive queue of the other end.
+    Unread bytes are in the send queue of the own end, or in the receive queue of the other end.
     """
     own = {*connections}
     others = {(there, here) for here, there in own}
