@@ -1,4 +1,4 @@
-"""Check whether code already raises, or is skipped, as long as a variable is None (before the first message)."""
+"""Check whether code already raises, or does not run, while a variable is None (before the first message)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.patching.document import Document
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether a place is never completed while `code` is None: it is skipped, or code there already raises."""
+    """Return whether code at a place cannot complete while `code` is None: it does not run, or it raises."""
     if isinstance(place, ast.stmt) and _relies_on(place, code):
         return True
     inner = place
@@ -47,7 +47,7 @@ def _checked_before(source: Document, statement: ast.AST, code: str) -> bool:
 
 
 def _relies_on(statement: ast.stmt, code: str) -> bool:
-    """Return whether a statement always evaluates an operation on `code` that raises if `code` is None."""
+    """Return whether a statement always evaluates an operation on `code` that raises for None."""
     if hasattr(statement, "body"):
         return False
     waiting: list[ast.AST] = [statement]
@@ -65,7 +65,7 @@ def _relies_on(statement: ast.stmt, code: str) -> bool:
 
 
 def _calculated(node: ast.AST) -> Iterator[ast.expr]:
-    """Yield the operands of an expression for which None would raise."""
+    """Yield the operands of an expression that would raise if they were None."""
     if isinstance(node, ast.BinOp):
         yield from (node.left, node.right)
     elif isinstance(node, ast.UnaryOp) and not isinstance(node.op, ast.Not):
@@ -84,7 +84,7 @@ def _breaks(loop: ast.While) -> bool:
 
 
 def _implies(test: ast.expr, code: str, present: bool) -> bool:
-    """Return whether `code` is not None if the test is true (`present=True`) or false (`present=False`)."""
+    """Return whether a true test (`present=True`) or a false one (`present=False`) implies that `code` is not None."""
     if isinstance(test, ast.BoolOp):
         decisive = ast.And if present else ast.Or
         return isinstance(test.op, decisive) and any(_implies(each, code, present) for each in test.values)

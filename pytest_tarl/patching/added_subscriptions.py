@@ -22,7 +22,7 @@ from tarl_lint.model import SiteId
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
-# public attributes of rclpy.node.Node, which a new attribute must not replace
+# public attributes of rclpy.node.Node, which new attributes must not replace
 _NODE_ATTRIBUTES = {
     "client", "clients", "context", "default_callback_group", "executor", "guards", "handle", "publishers", "services",
     "subscriptions", "timers", "waitables",
@@ -31,7 +31,7 @@ _NODE_ATTRIBUTES = {
 
 @dataclass
 class Subscription:
-    """A subscription to add, with its place and the variables that it sets."""
+    """A subscription to add: its place, and the variables that it sets."""
 
     topic: str
     type: str
@@ -41,7 +41,7 @@ class Subscription:
 
 
 class Subscriptions:
-    """The subscriptions that one rewrite of a node adds."""
+    """The subscriptions that one rewrite adds to a node."""
 
     def __init__(self, analysis: Analysis, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -50,7 +50,7 @@ class Subscriptions:
         self._taken: dict[tuple[str, bool], set[str]] = {}
 
     def reading(self, sensor: Sensor, site: SiteId, source: Document, place: ast.AST) -> Reading:
-        """Return the expression for a sensor's value at a place. Raise RepairError."""
+        """Return an expression for a sensor's value at a place. Raise RepairError."""
         subscription = self._subscription(sensor.topic or "", site, source, place)
         wanted = sensor.path
         if wanted not in subscription.names:
@@ -62,7 +62,7 @@ class Subscriptions:
     def edits(self) -> dict[str, list[Edit]]:
         """Return the edits that add the subscriptions, by path.
 
-        The calls that subscribe come first, because a callback may be added directly after the method that subscribes.
+        The subscribing calls come first, because a callback may be inserted directly after the method that subscribes.
         """
         edits: dict[str, list[Edit]] = {}
         imports: dict[str, list[Import]] = {}
@@ -81,7 +81,7 @@ class Subscriptions:
         return edits
 
     def _subscription(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> Subscription:
-        """Return or add a subscription that is readable at a place. Raise RepairError."""
+        """Return a subscription that can be read at a place, added if necessary. Raise RepairError."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
             same = each.store.source is source and each.store.owner is store.owner
@@ -96,7 +96,7 @@ class Subscriptions:
         return self._added[-1]
 
     def _reach(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> tuple[Anchor, Store]:
-        """Return where to subscribe and where to store values. Raise RepairError."""
+        """Return where to subscribe, and where to store values. Raise RepairError."""
         seen: Anchor | None = None
         for anchor in anchors(self._analysis, site, source.path):
             seen = seen or anchor
@@ -112,7 +112,7 @@ class Subscriptions:
         raise RepairError(_unreachable(topic, source, place, seen))
 
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
-        """Return the subscribing call and its message type; append the imports."""
+        """Return the subscribing call and its message type; add the imports that it needs to `imports`."""
         source = each.anchor.source
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
@@ -131,7 +131,7 @@ class Subscriptions:
         return f"{subscriber}({topic}, {kind}, {target})", kind
 
     def _target(self, each: Subscription, callback: str, imports: list[Import]) -> str:
-        """Return the callback of the subscribing call; append the imports."""
+        """Return the callback of the subscribing call; add the imports that it needs to `imports`."""
         here = each.anchor.source.method(each.anchor.statement)
         if each.store.owner is not None and here is not None:
             return f"{here[2]}.{callback}"
@@ -148,7 +148,7 @@ class Subscriptions:
         return self._fresh(each.store, base, each.anchor.source)
 
     def _fresh(self, store: Store, base: str, *elsewhere: Document) -> str:
-        """Reserve and return a name that the modules do not use."""
+        """Reserve and return a name that is unused in the modules."""
         attribute = store.owner is not None
         known = [self._names(store.source, attribute)]
         if not attribute:
@@ -159,7 +159,7 @@ class Subscriptions:
         return name
 
     def _names(self, source: Document, attribute: bool) -> set[str]:
-        """Return the names used in a module, or the attributes used in its classes."""
+        """Return the names used in a module or, with `attribute`, the attributes used in its classes."""
         key = (source.path, attribute)
         if key not in self._taken:
             self._taken[key] = self._attributes(source) if attribute else set(names(source))
@@ -169,7 +169,7 @@ class Subscriptions:
         """Return all attributes of the analysed classes and of rclpy nodes."""
         names = set(_NODE_ATTRIBUTES)
         for path in self._analysis.sources:
-            with suppress(RepairError):  # a file that cannot be parsed contributes no names
+            with suppress(RepairError):  # a file that cannot be parsed has no names
                 names |= class_attributes(self._document(path))
         return names | class_attributes(source)
 

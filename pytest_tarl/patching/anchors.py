@@ -1,4 +1,4 @@
-"""Find where a node creates its subscriptions, so that a repair can add another subscription there."""
+"""Find where a node creates its subscriptions, so that a repair can add another one there."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _NODE_METHODS = {
 class Anchor:
     """A statement next to which a subscription can be added.
 
-    `node` is the expression for the rclpy node, or "" for rospy.
+    `node` is the expression for the rclpy node; it is empty for rospy.
     """
 
     source: Document
@@ -61,21 +61,21 @@ class Anchor:
 
 
 def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
-    """Yield places to subscribe: first next to subscriptions in the site's flows, then next to those in its file.
+    """Yield places to subscribe: next to subscriptions in the site's flows, then next to those in its file.
 
-    The places at which a node starts come last. They are for nodes without a usable subscription.
+    Last come the places where a node starts, for nodes without a usable subscription.
     """
     own = {flow.source for flow in analysis.flows if any(step.site == site for step in flow.steps)}
     sources = dict.fromkeys(flow.source for flow in analysis.flows)
     for each in sorted(sources, key=lambda each: (each not in own, each.span.path != path)):
         yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
-        with suppress(RepairError):  # skip files that cannot be parsed, because they cannot start a node
+        with suppress(RepairError):  # a file that cannot be parsed cannot start a node
             yield from _started(document(name, analysis.sources[name]))
 
 
 def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
-    """Return the place for another subscription, after `call` but outside any loop; None if there is none."""
+    """Return the place for another subscription after `call`, outside any loop, or None."""
     statement = source.statement(call)
     within = [statement, *_until_function(source, statement)]
     loops = [each for each in within if isinstance(each, Loop)]
@@ -119,7 +119,7 @@ def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
 
 
 def _started(source: Document) -> Iterator[Anchor]:
-    """Yield the places after calls that start a node, then the places after calls that use the node."""
+    """Yield the places after calls that start a node, then those after calls that use the node."""
     ros2 = is_ros2(source)
     calls = [node for node in ast.walk(source.tree) if isinstance(node, ast.Call)]
     ranked = [(_start_rank(source, call, ros2), call) for call in calls]
@@ -131,7 +131,7 @@ def _started(source: Document) -> Iterator[Anchor]:
 
 
 def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
-    """Return 0 if a call runs once when a node starts, 1 or 2 if this is less certain, and `_NO_START` otherwise."""
+    """Return 0 if a call runs once when a node starts, 1 or 2 if this is less certain, else `_NO_START`."""
     name = _called(call)
     if not ros2:
         return 0 if name == "init_node" else _NO_START
@@ -161,7 +161,7 @@ def _node(source: Document, call: ast.expr) -> str | None:
 
 
 def _receiver(call: ast.Call) -> str:
-    """Return the receiver of a call `node.create_…(…)`, or ""."""
+    """Return the receiver of a call `node.create_…(…)`, or an empty text."""
     named = isinstance(call.func, ast.Attribute) and call.func.attr in _NODE_METHODS
     return ast.unparse(call.func.value) if named and isinstance(call.func, ast.Attribute) else ""
 
@@ -184,6 +184,6 @@ def _until_function(source: Document, statement: ast.stmt) -> Iterator[ast.stmt]
 
 
 def _leader(source: Document, statement: ast.stmt) -> ast.stmt | None:
-    """Return the first statement on the line of a statement, or None if the first one is a definition."""
+    """Return the first statement on a statement's line; None if that is a definition."""
     around = [*reversed(source.block(statement)), *_until_function(source, statement)]
     return next((each for each in around if each.lineno == statement.lineno and source.leads(each)), None)

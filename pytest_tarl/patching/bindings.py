@@ -1,4 +1,4 @@
-"""Bindings of a module: the assignments of a name and its early values."""
+"""Bindings of a module: where a name is assigned, and its early values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Scope = Function | ast.Lambda
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """A place that assigns `target`. The value is one of `constants`, a new default object (`fresh`), or unknown."""
+    """A place that assigns `target`: one of `constants`, a new default object (`fresh`), or an unknown value."""
 
     node: ast.AST
     target: str
@@ -31,7 +31,7 @@ def bindings(source: Document) -> tuple[Binding, ...]:
 
 
 def scope(source: Document, place: ast.AST, name: str) -> Scope | None:
-    """Return the function or lambda to which a name is local, else None."""
+    """Return the function or lambda in which a name is local, or None."""
     for around in source.ancestors(place):
         if isinstance(around, Scope) and name in local_names(source, around):
             return around
@@ -40,7 +40,7 @@ def scope(source: Document, place: ast.AST, name: str) -> Scope | None:
 
 @cache
 def local_names(source: Document, function: Scope) -> frozenset[str]:
-    """Return the names local to a function, including its parameters."""
+    """Return a function's local names, including its parameters."""
     arguments = function.args
     every = [
         *arguments.posonlyargs,
@@ -74,7 +74,7 @@ def is_bound(source: Document, place: ast.AST, code: str) -> bool:
 
 
 def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant], bool]:
-    """Return the constants assigned to `a.b.c`, and whether it gets default objects."""
+    """Return the constants assigned to `a.b.c`, and whether it is also assigned default objects."""
     local = scope(source, place, code) if code.isidentifier() else None
     constants: set[Constant] = set()
     fresh = False
@@ -107,7 +107,7 @@ def _has_name(source: Document, place: ast.AST, name: str) -> bool:
 
 
 def _has_attribute(source: Document, place: ast.AST, chain: tuple[str, ...]) -> bool:
-    """Return whether an attribute exists from the start; assumed for all objects but `self`."""
+    """Return whether an attribute exists from the start; assumed for all objects except `self`."""
     method = source.method(place)
     if method is None or len(chain) < 2 or chain[0] != method[2]:
         return True

@@ -1,7 +1,7 @@
-"""Message fields that several statements build, such as `msg.data += b`.
+"""Message fields that are built by several statements, such as `msg.data += b`.
 
-The program has no single expression for the published value of such a field. Therefore, a change of the field is
-written before the publish call.
+The program has no single expression for the published value of such a field. The field is therefore changed just before
+the publish call.
 """
 
 from __future__ import annotations
@@ -13,23 +13,23 @@ from dataclasses import dataclass
 from pytest_tarl.patching.document import Document
 from pytest_tarl.patching.integer_fields import in_integer_field
 
-FEWEST = 2  # minimum number of statements that write a field
+FEWEST = 2  # minimum number of statements that write the field
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Built:
-    """A field of a message, such as `linear.x`, and the statements of a function that write it."""
+    """A field of a message, such as `linear.x`, and the statements in a function that write it."""
 
     field: str
     writes: tuple[ast.Assign | ast.AugAssign, ...]
 
 
 def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, Built]]:
-    """Return (message, field) for each field of a published message that several statements of the function build.
+    """Return (message, field) for each field of a published message that several statements build.
 
-    Every path to the publish call must set the field, or the function must create the message. Otherwise, the message
-    might keep the field from an earlier call, and a factor would be applied to it again and again. Fields that hold
-    strings or integers are left out.
+    Every path to the publish call must set the field, or the function must create the message. Otherwise the field
+    might keep its value from an earlier call, and a factor would be applied to it again and again. Fields with strings
+    or integers are left out.
     """
     published = _published(statement)
     function = source.function(statement)
@@ -47,7 +47,7 @@ def built_fields(source: Document, statement: ast.stmt) -> list[tuple[ast.expr, 
 
 
 def _published(statement: ast.stmt) -> ast.expr | None:
-    """Return the name or attribute that a statement publishes, else None."""
+    """Return the name or attribute that a statement publishes, or None."""
     call = statement.value if isinstance(statement, ast.Expr) else None
     if not isinstance(call, ast.Call) or len(call.args) != 1 or call.keywords:
         return None
@@ -84,7 +84,7 @@ def _before(source: Document, statement: ast.stmt, function: ast.AST) -> Iterato
 
 
 def _sets(statement: ast.stmt, target: str) -> bool:
-    """Return whether a statement certainly assigns a target."""
+    """Return whether a statement is certain to assign a target."""
     if isinstance(statement, ast.Assign):
         return any(ast.unparse(one) == target for one in statement.targets)
     if isinstance(statement, ast.If):
@@ -112,7 +112,7 @@ def _is_made(above: Sequence[ast.stmt], message: str) -> bool:
 
 
 def _is_number(source: Document, writes: Sequence[ast.Assign | ast.AugAssign]) -> bool:
-    """Return whether a field certainly holds a number that may be a fraction."""
+    """Return whether a field is certain to hold a number that may be a fraction."""
     arithmetic = ast.Add | ast.Sub | ast.Mult | ast.Div
     counted = any(in_integer_field(source, one.value) for one in writes)
     texts = any(isinstance(one.value, ast.JoinedStr) or _is_text(one.value) for one in writes)

@@ -1,4 +1,4 @@
-"""Apply patches to files: hunks of lines and their effect on a file's bytes."""
+"""Apply patches to files: hunks of lines, and their effect on a file's bytes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ Lines = tuple[bytes, ...]
 
 
 class MisfitError(Exception):
-    """A hunk fits nowhere; the argument is its line number from 1."""
+    """A hunk fits nowhere; the argument is its line number (from 1)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hunk:
-    """Lines with their line endings and signs ("+", "-" or " "). `start` is the line in the original, from 0."""
+    """Lines with line endings and signs ("+", "-" or " "). `start` is the line in the original, from 0."""
 
     start: int
     lines: tuple[tuple[str, bytes], ...]
@@ -34,7 +34,7 @@ class Hunk:
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """Replace the lines `old` from line `start` (counted from 0) by `new`."""
+    """Replace the lines `old`, starting at line `start` (from 0), by `new`."""
 
     start: int
     old: Lines
@@ -48,7 +48,7 @@ class Replacement:
 
 @dataclass(frozen=True, slots=True)
 class FilePatch:
-    """The part of a patch for one file; `before` and `after` are git's blob ids of its contents."""
+    """A patch's changes to one file; `before` and `after` are git's blob ids of its contents."""
 
     name: str
     before: str
@@ -57,7 +57,7 @@ class FilePatch:
 
     @property
     def replacements(self) -> tuple[Replacement, ...]:
-        """Return the changed lines without context lines."""
+        """Return the changed lines without context."""
         return tuple(one for hunk in self.hunks for one in _replacements(hunk))
 
     @property
@@ -85,7 +85,7 @@ class FilePatch:
         return made if identical(made, self.after) else None
 
     def applied(self, content: bytes) -> bytes:
-        """Return the patched content even if lines have moved. Raise MisfitError."""
+        """Return the patched content, even if lines have moved. Raise MisfitError."""
         lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
         for hunk in self.hunks:
             found = _place(hunk, lines, at, hunk.start + shift)
@@ -115,7 +115,7 @@ def _replacements(hunk: Hunk) -> Iterator[Replacement]:
 
 
 def _place(hunk: Hunk, lines: Sequence[bytes], least: int, likely: int) -> int | None:
-    """Return the line from `least` on, nearest to `likely`, where the hunk matches; else None."""
+    """Return the matching line nearest to `likely`, not before `least`, or None if the hunk matches nowhere."""
     old = list(hunk.old)
     fits = [at for at in range(least, len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     return min(fits, key=lambda at: abs(at - likely), default=None)

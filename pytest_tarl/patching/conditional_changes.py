@@ -1,4 +1,4 @@
-"""Make a change conditional, by an `if` or a conditional expression."""
+"""Make a change conditional, with an `if` or a conditional expression."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.patching.document import Document, Edit, parse_expression
 from pytest_tarl.patching.expression_texts import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
-LONGEST_COPY = 3  # maximum number of lines of a statement that is written twice, under `if` and `else`
-# maximum length of a condition inside an expression; longer conditions get a name
+LONGEST_COPY = 3  # a statement of at most this many lines may be written twice, under `if` and `else`
+# maximum length of a condition inside an expression; longer ones get a name
 LONGEST_CONDITION = 48
 _ARITHMETIC = {
     "abs",
@@ -37,7 +37,7 @@ _DIRECTIVES = ("# noqa", "# type:", "# pragma", "# pylint", "# tarl:", "# pyrigh
 class Change:
     """A use of a constant, and the code `then` that replaces it while the condition holds.
 
-    If the change is a factor, `factor` and `rest` are the two parts of `then`, for example `2.4` and ` * self.kp`.
+    If the change is a factor, `factor` and `rest` are the parts of `then`, such as `2.4` and ` * self.kp`.
     """
 
     node: ast.expr
@@ -47,7 +47,7 @@ class Change:
 
 
 def lazy(source: Document, node: ast.expr) -> ast.expr | None:
-    """Return the lambda or generator body of a use that runs later, else None."""
+    """Return the body of the lambda or generator in which a use runs later, or None."""
     for around in source.ancestors(node):
         if isinstance(around, ast.stmt):
             return None
@@ -67,7 +67,7 @@ def doubled(source: Document, statement: ast.stmt, changes: Sequence[Change]) ->
 
 
 def replaced(source: Document, changes: Sequence[Change]) -> list[Edit]:
-    """Return the edits that apply changes unconditionally."""
+    """Return the edits that make changes unconditionally."""
     return [
         Edit(*_place(source, change.node), fitted(source, change.node, change.then)) for change in changes
     ]
@@ -102,7 +102,7 @@ def named(source: Document, statement: ast.stmt, name: str, condition: str) -> E
 
 
 def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Return whether a condition keeps its value until the changes are evaluated."""
+    """Return whether a condition cannot change its value before the changes are evaluated."""
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
@@ -111,7 +111,7 @@ def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 def choices(
     source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
 ) -> Iterator[Edit]:
-    """Yield edits inside a statement, with long conditions assigned before it."""
+    """Yield edits inside a statement; long conditions are assigned to a name before it."""
     test = tests[0]
     long = len(changes) > 1 or len(test) > LONGEST_CONDITION
     if long and nameable(source, statement, changes):
@@ -126,7 +126,7 @@ def choices(
 def neighbours(
     source: Document, twice: Sequence[tuple[ast.stmt, list[Change], str]]
 ) -> Iterator[list[tuple[ast.stmt, list[Change], str]]]:
-    """Group consecutive statements that share a condition and do not change its value."""
+    """Group consecutive statements that have the same condition and do not change its value."""
     group: list[tuple[ast.stmt, list[Change], str]] = []
     for each in twice:
         if group and not _joins(source, group[-1][0], each[0], group[0][2], each[2]):
@@ -162,14 +162,14 @@ def _is_elif(source: Document, statement: ast.stmt) -> bool:
 
 
 def _consumed(source: Document, generator: ast.GeneratorExp) -> bool:
-    """Return whether a builtin consumes a generator at once."""
+    """Return whether a builtin consumes a generator immediately."""
     call = source.parents[generator]
     eager = {"sum", "min", "max", "any", "all", "list", "tuple", "set", "sorted", "dict"}
     return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in eager
 
 
 def _has_long_text(statement: ast.stmt) -> bool:
-    """Return whether a string spans lines, which indenting would change."""
+    """Return whether a statement contains a string of several lines, which indenting would change."""
     texts = (node for node in ast.walk(statement) if isinstance(node, ast.Constant | ast.JoinedStr))
     return any(node.end_lineno != node.lineno for node in texts)
 
@@ -179,7 +179,7 @@ def _place(source: Document, node: ast.expr) -> tuple[int, int]:
 
 
 def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> str:
-    """Return a statement with its changes; drop its comments, except directives for tools."""
+    """Return a statement with its changes, without comments except directives for tools."""
     start, end = source.start(statement), source.end(statement)
     text = source.text[start:end]
     for edit in sorted(replaced(source, changes), key=lambda each: -each.start):
@@ -189,6 +189,6 @@ def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 
 
 def _deeper(text: str, unit: str) -> str:
-    """Indent the lines after the first by one more level."""
+    """Indent all lines except the first by one more level."""
     first, *others = text.replace("\r\n", "\n").split("\n")
     return "\n".join([first, *(unit + line if line.strip() else line for line in others)])

@@ -23,21 +23,21 @@ PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached
 # rclpy method that declares several parameters: a namespace and (name, default) pairs
 SEVERAL = "declare_parameters"
 _CONVERSIONS = ("int", "float", "round")
-ENTRY = "get"  # method that reads an entry of a parameter that is a mapping
+ENTRY = "get"  # method that reads an entry of a mapping parameter
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
 ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")
 _NUMERAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
-_ARGUMENT = r"\$\((?:arg|var) ([\w-]+)\)"  # matches a value that is taken from a launch argument
+_ARGUMENT = r"\$\((?:arg|var) ([\w-]+)\)"  # matches a value taken from a launch argument
 _PLAIN = re.compile(r"[-+]?\d+")
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A number at a definition: its offsets `start` and `end` in a file, its name in this file, and its value.
+    """A number at a definition: its offsets `start` and `end` in a file, its name there, and its value.
 
-    To make the constant f times as large, the number must be made (1 + (f - 1) · `share`) times as large.
+    To multiply the constant by f, multiply the number by (1 + (f - 1) · `share`).
     """
 
     path: str
@@ -51,9 +51,10 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class ParameterInFile(Operand):
-    """A parameter that is searched in the file that sets it, because its uses stand for several parameters.
+    """A parameter that is changed in the file that sets it, because its uses read several parameters.
 
-    `span` is a use of the parameter. `size` is the usual size of such a parameter if its value is 0, or 0 if unknown.
+    `span` is a use of the parameter. If its value is 0, `size` is the usual size of such a parameter, or 0 if that is
+    unknown.
     """
 
     place: Place | None = None
@@ -61,10 +62,10 @@ class ParameterInFile(Operand):
 
 
 def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
-    """Return the definitions of an operand's constants if all are numbers away from the use, else nothing.
+    """Return where an operand's constants are defined, if all are numbers outside the use; else nothing.
 
-    An operand has several definitions, for example, if it is a parameter of a function that is called several times.
-    Zeros among other numbers are left out, because a factor does not change them.
+    An operand can have several definitions, for example if it is a parameter of a function with several calls. Zeros
+    beside other numbers are left out, because a factor does not change them.
     """
     if operand.literal:
         return ()
@@ -77,13 +78,13 @@ def defined(analysis: Analysis, operand: Operand) -> tuple[Place, ...]:
 
 
 def alternatives(analysis: Analysis, places: Sequence[Place]) -> bool:
-    """Return whether the program selects one of these numbers."""
+    """Return whether the program chooses between these numbers."""
     holders = [_holders(analysis, place) for place in places] if len(places) > 1 else []
     return any(one & other for one, other in itertools.combinations(holders, 2))
 
 
 def _holders(analysis: Analysis, place: Place) -> set[tuple[str, int, int]]:
-    """Return the path and offsets of each table literal and conditional expression around a number."""
+    """Return path and offsets of each table literal and conditional expression around a number."""
     source = document(place.path, analysis.sources[place.path])
     return {
         (place.path, source.start(node), source.end(node))
@@ -95,7 +96,7 @@ def _holders(analysis: Analysis, place: Place) -> set[tuple[str, int, int]]:
 
 
 def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | None:
-    """Return the number at a definition of an operand's constant, or None if there is none."""
+    """Return the number where an operand's constant is defined, or None if there is none."""
     if span.path not in analysis.sources:
         return None
     source = document(span.path, analysis.sources[span.path])
@@ -110,9 +111,9 @@ def _defined_at(analysis: Analysis, operand: Operand, span: Span) -> Place | Non
 def number_at(
     source: Document, node: ast.expr, name: str, value: bool | int | float, share: float = 1.0
 ) -> Place | None:
-    """Return the place of a number with this name and value. If it is in a string, return the place inside the quotes.
+    """Return the place of a number with this name and value; in a string, the place inside the quotes.
 
-    Return None if the string is not written exactly as its value, for example if it has escape sequences.
+    Return None if the text of the string is not exactly its value, for example because of escape sequences.
     """
     start, end = source.start(node), source.end(node)
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -123,7 +124,7 @@ def number_at(
 
 
 def parameter(analysis: Analysis, operand: Operand) -> str:
-    """Return the ROS parameter or configuration key from which an operand's value comes, or "" if there is none.
+    """Return the ROS parameter or configuration key that an operand's value comes from, or an empty text.
 
     The value may be the default of the parameter.
     """
@@ -133,7 +134,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
     source = document(span.path, analysis.sources[span.path])
     node = _converted(source.at(span))
     if (key := entry_key(node)) and operand.value is None:
-        return key  # an entry of a parameter that is a table
+        return key  # an entry of a table parameter
     around = [node, *source.ancestors(node)] if node is not None else []
     entry = next((each for each in around if isinstance(each, ast.Tuple | ast.List)), None)
     for each in around:
@@ -149,7 +150,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
 
 
 def entry_key(node: ast.expr | None) -> str:
-    """Return the key with which an expression reads an entry: "gain" of `table["gain"]` or `table.get("gain")`."""
+    """Return the key of an entry: "gain" for `table["gain"]` or `table.get("gain")`."""
     if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Load):
         return next(iter(strings([node.slice])), "")
     if isinstance(node, ast.Call) and called(node) == ENTRY and len(node.args) == 1:
@@ -158,14 +159,14 @@ def entry_key(node: ast.expr | None) -> str:
 
 
 def _converted(node: ast.expr | None) -> ast.expr | None:
-    """Remove conversions to a number: for `int(get_param("~times"))`, return the call of `get_param`."""
+    """Remove conversions to a number: `int(get_param("~times"))` becomes the call of `get_param`."""
     while isinstance(node, ast.Call) and called(node) in _CONVERSIONS and len(node.args) == 1:
         node = node.args[0]
     return node
 
 
 def package_files(root: Path, *nodes: Path) -> dict[str, str]:
-    """Return path (relative to `root`) → text of the node packages' configuration files."""
+    """Return path (relative to `root`) → text for the configuration files of the nodes' packages."""
     found: dict[str, str] = {}
     for top in dict.fromkeys(_package(root, node) for node in nodes):
         found |= _files_in(top, root)
@@ -173,13 +174,13 @@ def package_files(root: Path, *nodes: Path) -> dict[str, str]:
 
 
 def _package(root: Path, node: Path) -> Path:
-    """Return the folder of the package that contains a node, or `root`."""
+    """Return the package folder that contains a node, or `root`."""
     top = next((folder for folder in node.parents if (folder / "package.xml").is_file()), root)
     return top if top.is_relative_to(root) else root
 
 
 def _files_in(top: Path, root: Path) -> dict[str, str]:
-    """Return path (relative to `root`) → text of at most `_MOST_FILES` configuration files."""
+    """Return path (relative to `root`) → text for at most `_MOST_FILES` configuration files."""
     found: dict[str, str] = {}
     for path in sorted(top.rglob("*")):
         if len(found) >= _MOST_FILES:
@@ -208,7 +209,7 @@ def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
 
 
 def _launched(path: str, key: str, text: str) -> Iterator[Place]:
-    """Yield the numbers of a Python launch file that determine a parameter."""
+    """Yield the numbers in a Python launch file that determine a parameter."""
     source = _python(path, text)
     if source is None:
         return
@@ -219,7 +220,7 @@ def _launched(path: str, key: str, text: str) -> Iterator[Place]:
 
 
 def _target(source: Document, node: ast.expr) -> str:
-    """Return the name of a number, or its place in an expression, or ""."""
+    """Return a name for a number, or its place in an expression, or an empty text."""
     around = source.parents.get(node)
     if isinstance(around, ast.Assign) and len(around.targets) == 1:
         return source.source(around.targets[0])
@@ -227,7 +228,7 @@ def _target(source: Document, node: ast.expr) -> str:
 
 
 def computed_at(name: str, files: Mapping[str, str]) -> str:
-    """Say where a launch file computes a parameter without a changeable number, else ""."""
+    """Describe where a launch file computes a parameter without a number to change, or return an empty text."""
     key = key_of(name)
     for path, text in files.items():
         source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
@@ -253,7 +254,7 @@ def redefined(place: Place, value: bool | int | float) -> str:
 
 
 def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
-    """Return the edits of one file. Raise RepairError if a place no longer contains its number."""
+    """Return the edits to one file. Raise RepairError if a place no longer has its number."""
     found = []
     for place, value in places.items():
         new = redefined(place, value)
@@ -268,7 +269,7 @@ def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
 
 
 def _written(node: ast.expr | None) -> ast.expr | None:
-    """Return the number in an expression, such as a default in `float(…)`."""
+    """Return the number in an expression, such as a default inside `float(…)`."""
     while isinstance(node, ast.Call):
         function = ast.unparse(node.func)
         if function in ("float", "int") and len(node.args) == 1 and not node.keywords:
@@ -282,7 +283,7 @@ def _written(node: ast.expr | None) -> ast.expr | None:
 
 
 def literal_number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the number of a literal or string, else None."""
+    """Return the number in a literal or string, or None."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
         return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)
     if negative := isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
@@ -300,7 +301,7 @@ def _same(old: str, value: float) -> bool:
 
 
 def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
-    """Return the other uses of the operands' constants, as `path:line`."""
+    """Return where else the operands' constants are used, as `path:line`."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {span for operand in used for span in (operand.definition, *operand.definitions)} - {None}
     names = {key_of(parameter(analysis, operand)) for operand in used} - {""}
@@ -321,7 +322,7 @@ def _entry_of_parameter(call: ast.Call) -> str:
 
 
 def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
-    """Return the parameter declared by an entry of `declare_parameters`, including its namespace."""
+    """Return the parameter that an entry of `declare_parameters` declares, with its namespace."""
     elements = entry.elts if isinstance(entry, ast.Tuple | ast.List) else []
     namespace = [*call.args[:1], *(one.value for one in call.keywords if one.arg == "namespace")]
     texts = strings((*namespace[:1], *elements[:1]))
@@ -329,7 +330,7 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 
 def _name(source: Document, node: ast.expr) -> str:
-    """Return the variable or parameter that a literal defines, or ""."""
+    """Return the variable or parameter that a literal defines, or an empty text."""
     key = ""
     inner: ast.AST = node
     for each in source.ancestors(node):
@@ -352,7 +353,7 @@ def _name(source: Document, node: ast.expr) -> str:
 
 
 def _key(source: Document, table: ast.Dict | ast.List | ast.Tuple, entry: ast.expr) -> str:
-    """Return the subscript that reads an entry of a table, such as `["hold"]` or `[2]`."""
+    """Return the subscript for an entry of a table, such as `["hold"]` or `[2]`."""
     if isinstance(table, ast.Dict):
         keys = [key for key, value in zip(table.keys, table.values, strict=True) if value is entry and key]
         return f"[{source.source(keys[0])}]" if keys else ""
@@ -394,7 +395,7 @@ def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
 
 
 def _named(word: str) -> str:
-    """Return a pattern that matches a launch-file element with this name, up to its value."""
+    """Return a pattern that matches a launch-file element of this name, up to its value."""
     named = rf"""name[ \t]*=[ \t]*["'](?:[^"']*(?<![\w-]))?{word}["'][^<>]*?"""
     return rf"""{named}(?:value|default)[ \t]*=[ \t]*["'][ \t]*"""
 

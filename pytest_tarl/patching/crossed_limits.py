@@ -1,8 +1,8 @@
 """Find limits that cross, as in `max(1.2, min(1.0, x))`, which is 1.2 for every x.
 
-If a changed limit lies beyond the opposite limit, the clamp always returns the same value. The node then ignores the
-value that it computes, and may command a value that the opposite limit forbids. Even if all missions pass, nobody would
-merge such a change.
+If a changed limit is beyond the opposite limit, the clamp always returns the same value. The node then ignores the
+value that it computes, and may command a value that the opposite limit forbids. Nobody would merge such a change, even
+if all missions pass.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pytest_tarl.patching.document import Document, called
 
 
 def crosses(source: Document, node: ast.expr, value: float) -> bool:
-    """Return whether a limit with this value would lie beyond a literal limit on the other side."""
+    """Return whether a limit with this value would be beyond the opposite literal limit."""
     node = _with_sign(source, node)
     call = source.parents.get(node)
     if not isinstance(call, ast.Call) or node not in call.args or isinstance(value, bool):
@@ -31,7 +31,7 @@ def crosses(source: Document, node: ast.expr, value: float) -> bool:
 
 
 def _limit(node: ast.AST | None, name: str) -> float | None:
-    """Return the literal argument of a two-argument call of `min` or `max`, or None for any other expression."""
+    """Return the literal argument of a two-argument `min` or `max`; None for any other expression."""
     if not isinstance(node, ast.Call) or called(node) != name or len(node.args) != 2:
         return None
     return next((found for one in node.args if (found := _number(one)) is not None), None)

@@ -1,4 +1,4 @@
-"""Find imported message packages that package.xml lacks."""
+"""Find message packages that are imported but missing from package.xml."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _PARTS = ("msg", "srv", "action")
 
 
 def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
-    """Return a sentence for each message package that a patch imports although package.xml does not list it.
+    """Return a sentence for each message package that a patch imports and package.xml does not list.
 
-    `changed` maps files to their new text. Packages that the file imported before the patch are not reported.
+    `changed` maps files to their new text. Packages that the file imported before the patch are ignored.
     """
     told: dict[str, None] = {}
     for path, text in changed.items():
@@ -41,7 +41,7 @@ def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
 
 
 def _imported(text: str | bytes) -> set[str]:
-    """Return the packages from which a file imports messages, services or actions."""
+    """Return the packages that a file imports messages, services or actions from."""
     modules: list[str] = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom) and not node.level and node.module:

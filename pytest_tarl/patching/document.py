@@ -1,4 +1,4 @@
-"""A source text with its syntax tree, and edits that keep all other text."""
+"""A source text with its syntax tree, and edits that leave all other text unchanged."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ _COMMENT = re.compile(r"[ \t\f]*(#[^\r\n]*)?")
 
 
 def called(call: ast.Call) -> str:
-    """Return the last part of the name of the function that is called."""
+    """Return the last part of the called function's name."""
     return ast.unparse(call.func).rpartition(".")[2]
 
 
 def argument_names(function: Function | ast.Lambda) -> list[str]:
-    """Return the names of the positional arguments of a function, without `self` and `cls`."""
+    """Return the names of a function's positional arguments, without `self` and `cls`."""
     return [one.arg for one in function.args.args if one.arg not in ("self", "cls")]
 
 
 def strings(nodes: Iterable[ast.AST]) -> list[str]:
-    """Return the values of the string literals among some nodes."""
+    """Return the values of the string literals among these nodes."""
     return [one.value for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
 
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters from `start` to `end` by `text`, with line feeds as line endings."""
+    """Replace the characters from `start` to `end` by `text`, whose line endings are line feeds."""
 
     start: int
     end: int
@@ -45,7 +45,7 @@ class Edit:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """Text and syntax tree of a module. Offsets count characters of the text."""
+    """Text and syntax tree of a module; offsets count characters."""
 
     path: str
     text: str
@@ -53,7 +53,7 @@ class Document:
 
     @cached_property
     def newline(self) -> str:
-        """Return the line ending of most lines."""
+        """Return the most frequent line ending."""
         windows = self.text.count("\r\n")
         return "\r\n" if windows * 2 > self.text.count("\n") else "\n"
 
@@ -69,13 +69,13 @@ class Document:
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:
-        """Map (start, end) offsets to the innermost expression."""
+        """Map (start, end) offsets to the innermost expression there."""
         nodes = (node for node in ast.walk(self.tree) if isinstance(node, ast.expr))
         return {(self.start(node), self.end(node)): node for node in nodes}
 
     @cached_property
     def unit(self) -> str:
-        """Return one level of this file's indentation, by default four spaces."""
+        """Return one level of this file's indentation; four spaces by default."""
         for node in ast.walk(self.tree):
             body = getattr(node, "body", None)
             if isinstance(node, ast.stmt) and isinstance(body, list) and self.alone(body[0]):
@@ -85,7 +85,7 @@ class Document:
         return "    "
 
     def start(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset of a node's first character, after any decorators."""
+        """Return the offset of a node's first character, without decorators."""
         return self.offset(node.lineno, node.col_offset)
 
     def end(self, node: ast.expr | ast.stmt) -> int:
@@ -97,27 +97,27 @@ class Document:
         return self.text[self.start(node) : self.end(node)]
 
     def line_start(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset at which the node's first line starts, including decorators."""
+        """Return the offset at which a node's first line (including decorators) starts."""
         decorators: list[ast.expr] = getattr(node, "decorator_list", [])
         return self.line_starts[min([node.lineno, *(each.lineno for each in decorators)]) - 1]
 
     def line_end(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset of the end of a node's last line, before the line ending."""
+        """Return the offset at which a node's last line ends, before the line ending."""
         match = _NEWLINE.search(self.text, self.end(node))
         return match.start() if match else len(self.text)
 
     def indentation(self, node: ast.stmt) -> str:
-        """Return the white space before the statement's first line."""
+        """Return the white space before a statement's first line."""
         line = self.text[self.line_starts[node.lineno - 1] : self.start(node)]
         return line[: len(line) - len(line.lstrip(" \t\f"))]
 
     def comment(self, node: ast.stmt) -> str:
-        """Return the comment after a statement, or ""."""
+        """Return the comment after a statement, or an empty text."""
         match = _COMMENT.match(self.text, self.end(node))
         return (match and match.group(1)) or ""
 
     def alone(self, node: ast.stmt) -> bool:
-        """Return whether no other statement shares the lines of this one."""
+        """Return whether a statement has its lines to itself."""
         after = self.text[self.end(node) : self.line_end(node)].strip(" \t\f")
         return self.leads(node) and after[:1] in ("", "#")
 
@@ -195,7 +195,7 @@ class Document:
 
 @cache
 def document(path: str, text: str) -> Document:
-    """Parse a text once. Raise RepairError if the text is not Python."""
+    """Parse a text, with caching. Raise RepairError if it is not Python."""
     try:
         return Document(path, text, parse(text))
     except SyntaxError as error:
@@ -203,21 +203,21 @@ def document(path: str, text: str) -> Document:
 
 
 def parse(text: str) -> ast.Module:
-    """Parse a text without showing warnings of the compiler. Raise SyntaxError."""
+    """Parse a text without compiler warnings. Raise SyntaxError."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return ast.parse(text)
 
 
 def parse_expression(code: str) -> ast.expr:
-    """Parse an expression of several lines or with a comment. Raise SyntaxError."""
+    """Parse an expression that may have several lines or a comment. Raise SyntaxError."""
     statement = parse(f"({code}\n)").body[0]
     assert isinstance(statement, ast.Expr)  # noqa: S101  (parentheses hold nothing else)
     return statement.value
 
 
 def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
-    """Return the text with all edits applied. Insertions at the same offset keep their order.
+    """Return the text with all edits made. Insertions at the same offset keep their order.
 
     Raise RepairError if two edits overlap or the result is not valid Python.
     """
@@ -227,7 +227,7 @@ def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
 
 
 def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str = "\n") -> str:
-    """Return a text with all edits applied. Raise RepairError if two overlap."""
+    """Return a text with all edits made. Raise RepairError if two overlap."""
     pieces, position = [], 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:

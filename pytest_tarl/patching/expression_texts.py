@@ -1,4 +1,4 @@
-"""Write expressions as a maintainer would: rounded numbers and no needless parentheses."""
+"""Write expressions as a maintainer would, with rounded numbers and without needless parentheses."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import ast
 
 from pytest_tarl.patching.document import Document, called, parse_expression
 
-DIGITS = 4  # number of significant digits of numbers in a repair
+DIGITS = 4  # significant digits of numbers in a repair
 
-# operator precedence, from the loosest to the tightest, as in the language reference
+# operator precedence from loosest to tightest, as in the language reference
 (
     TEST,
     OR,
@@ -88,12 +88,12 @@ def strength(code: str) -> int:
 
 
 def enclosed(code: str, needed: int) -> str:
-    """Return an expression. Put it in parentheses if its precedence is below `needed`."""
+    """Return an expression, in parentheses if its precedence is below `needed`."""
     return code if strength(code) >= needed else f"({code})"
 
 
 def fitted(source: Document, node: ast.expr, code: str) -> str:
-    """Return the code as it must be written in place of `node`, with parentheses if they are needed there."""
+    """Return the code to write in place of `node`, with parentheses if they are needed there."""
     before = source.text[: source.start(node)].rstrip(" \t")[-1:]
     after = source.text[source.end(node) :].lstrip(" \t")[:1]
     if before == "(" and after == ")":
@@ -126,7 +126,7 @@ def choice(condition: str, then: str, otherwise: str) -> str:
 
 
 def counting(source: Document, node: ast.expr) -> bool:
-    """Return whether a place needs an integer: it is an index, a length, or a number compared for equality."""
+    """Return whether a place needs an integer: an index, a length, or a number compared for equality."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Div | ast.Pow | ast.Mod):
@@ -158,7 +158,7 @@ def _counts(parent: ast.AST, child: ast.AST) -> bool:
 
 
 def _is_integer_vector(node: ast.AST) -> bool:
-    """Return whether a node is a literal list of at least two integers, such as a colour, a pixel or a shape."""
+    """Return whether a node is a literal list of two or more integers, such as a colour, pixel or shape."""
     elements = node.elts if isinstance(node, ast.List | ast.Tuple) else []
     numbers = [each.operand if isinstance(each, ast.UnaryOp) else each for each in elements]
     return len(numbers) > 1 and all(
@@ -167,7 +167,7 @@ def _is_integer_vector(node: ast.AST) -> bool:
 
 
 def _needed(parent: ast.AST, child: ast.expr) -> int:
-    """Return the lowest precedence that the expression `child` may have without parentheses under `parent`."""
+    """Return the lowest precedence that `child` may have under `parent` without parentheses."""
     if isinstance(parent, ast.BinOp):
         return _beside(parent, child)
     if isinstance(parent, ast.UnaryOp):

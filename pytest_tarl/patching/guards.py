@@ -18,14 +18,14 @@ from pytest_tarl.variables import prefixes
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """An expression for a sensor's value. Its part `absent` is None before the first message."""
+    """An expression for a sensor's value; its part `absent` is None before the first message."""
 
     code: str
     absent: str = ""
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python ("" if it always holds); `readings` maps sensors to expressions."""
+    """Return a guard as Python, or an empty text if it always holds; `readings` maps sensors to expressions."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):
@@ -53,8 +53,8 @@ def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
 def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct: Conjunct) -> Reading | None:
     """Return the first expression that can be evaluated at `place`, or None.
 
-    An expression is skipped if it may be unbound at `place`, or if its initial value makes the condition true. The
-    condition must be false until the first message arrives, so that the original code runs.
+    Expressions are skipped if they may be unbound at `place`, or if their initial value makes the condition true. The
+    condition must be false until the first message, so that the original code runs until then.
     """
     for code in expressions:
         chain = prefixes(code)
@@ -86,7 +86,7 @@ def _satisfied(conjunct: Conjunct, value: Constant) -> bool:
     if value is None:
         return False
     number = float(value)
-    # the interval crosses the end of the angle's range, such as from 3.0 to -3.0
+    # the interval wraps around the end of the angle's range, as from 3.0 to -3.0
     if conjunct.low > conjunct.high:
         return number >= conjunct.low or number <= conjunct.high
     return conjunct.low <= number <= conjunct.high
@@ -105,9 +105,9 @@ def _test(conjunct: Conjunct, code: str, is_boolean: bool) -> str:
 
 
 def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
-    """Return the condition `low <= code < high`. If `high` is the end of the sensor's range, use `<=` instead of `<`.
+    """Return the condition `low <= code < high`, with `<=` on both sides if `high` is the end of the range.
 
-    If the interval of an angle wraps around the end of the range, the condition bounds the difference from `low`.
+    If an angle's interval wraps around the end of the range, the condition is about the difference from `low`.
     """
     if low > high:
         period = (sensor.high or 0.0) - (sensor.low or 0.0)
@@ -140,6 +140,6 @@ def _quoted(text: str) -> str:
 
 
 def _rejects_none(conjunct: Conjunct, is_boolean: bool) -> bool:
-    """Return whether the condition is False for None, without an error."""
+    """Return whether the condition is False for None and does not raise."""
     equality = bool(conjunct.sensor.categories) or conjunct.low == conjunct.high
     return equality and not (is_boolean and not conjunct.low)

@@ -1,4 +1,4 @@
-"""Find the names that a module imports, and add imports at the places that a maintainer would choose."""
+"""Find the names that a module imports, and add imports where a maintainer would."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Import:
 
 
 def imported(source: Document, module: str, name: str) -> str:
-    """Return the expression for `module.name` in this file, or "" if it is not imported."""
+    """Return the expression for `module.name` in this file; empty if it is not imported."""
     for node in top_imports(source):
         if isinstance(node, ast.ImportFrom) and node.module == module and not node.level:
             for alias in node.names:
@@ -39,10 +39,10 @@ def imported(source: Document, module: str, name: str) -> str:
 
 
 def reference(source: Document, module: str, name: str) -> tuple[str, Import | None] | None:
-    """Return the expression for a new name of `module`, and the import that must be added (or None).
+    """Return the expression for a new name of `module`, and the import to add (or None).
 
     Return None if the file imports nothing from `module`. Modules match if one dotted name ends with the other, which
-    allows for relative imports and for files that are run as scripts.
+    covers relative imports and files that are run as scripts.
     """
     leaf = module.rpartition(".")[2]
     for node in top_imports(source):
@@ -61,7 +61,7 @@ def reference(source: Document, module: str, name: str) -> tuple[str, Import | N
 
 
 def import_edits(source: Document, wanted: Iterable[Import]) -> list[Edit]:
-    """Return edits that add imports. If a module is already imported from, extend this import."""
+    """Return edits that add imports; an existing import from the same module is extended."""
     by_module: dict[str, list[Import]] = {}
     for each in dict.fromkeys(wanted):
         by_module.setdefault(each.module, []).append(each)
@@ -81,7 +81,7 @@ def _same(imported_as: str, module: str) -> bool:
 
 
 def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[Edit]:
-    """Yield the edits that import more names of one module."""
+    """Yield the edits that import more names from a module."""
     for node in _import_block(source):
         same = isinstance(node, ast.ImportFrom) and "." * node.level + (node.module or "") == module
         if same and group[0].name:
@@ -92,7 +92,7 @@ def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[E
 
 
 def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Import) -> Edit:
-    """Add a name to an import. If its names are sorted or on separate lines, keep them so."""
+    """Add a name to an import; keep names sorted, or on separate lines, if they are."""
     names = [alias.name for alias in node.names]
     later = [alias for alias in node.names if alias.name > wanted.name and names == sorted(names)]
     neighbour = later[0] if later else node.names[-1]
@@ -106,7 +106,7 @@ def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Impor
 
 
 def _new_line(source: Document, module: str, line: str) -> Edit:
-    """Place an import in the block at the top of the module, next to similar imports."""
+    """Add an import to the block at the top of the module, next to similar ones."""
     block = [node for node in _import_block(source) if source.alone(node)]
     kind = f".{module.rpartition('.')[2]}"
     alike = [

@@ -1,4 +1,4 @@
-"""Integer fields of messages: ROS rejects a message with a float in such a field."""
+"""Integer fields of messages, for which ROS rejects floats."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def in_integer_field(source: Document, node: ast.expr) -> bool:
 
 
 def _takes_positional(source: Document, call: ast.Call, argument: ast.AST) -> bool:
-    """Return whether a positional argument of a message constructor sets an integer field."""
+    """Return whether a message constructor's positional argument sets an integer field."""
     name = _type_name(source, call.func)
     at = next(at for at, each in enumerate(call.args) if each is argument)
     return _INTEGER.match([*_fields(name).values(), *[""] * (at + 1)][at]) is not None
@@ -64,7 +64,7 @@ def _constructors(source: Document) -> dict[str, ast.expr]:
 
 
 def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bool:
-    """Return whether a field of a message type holds integers; `kind` is the name of the type in this file."""
+    """Return whether a field of a message type is an integer; `kind` is the type's name in this file."""
     found = _type_name(source, kind)
     for field in fields:
         found = _fields(found).get(field, "")
@@ -74,7 +74,7 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of a message type; "" if it is not imported."""
+    """Return the ROS name of a message type; empty if the type is not imported."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 

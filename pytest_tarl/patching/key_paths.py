@@ -1,4 +1,4 @@
-"""The keys above a number in a YAML or JSON file. They show to which node a parameter belongs."""
+"""Find the keys above a number in a YAML or JSON file, which show to which node a parameter belongs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MOST_FILES = 64  # maximum number of files whose keys are cached
 
 
 def keys_above(place: Place, text: str) -> tuple[str, ...] | None:
-    """Return the keys above a number, or None for other files."""
+    """Return the keys above a number; None for other kinds of files."""
     if not place.path.endswith((".yaml", ".yml", ".json")):
         return None
     return _keys(text).get(place.start)
@@ -27,7 +27,7 @@ def belongs(name: str, keys: Sequence[str]) -> bool:
 
 @lru_cache(_MOST_FILES)
 def _keys(text: str) -> dict[int, tuple[str, ...]]:
-    """Map the offset of each number in a file to the keys above it, without wildcards; empty without PyYAML."""
+    """Map each number's offset to the keys above it, without wildcards; empty if PyYAML is missing."""
     try:
         import yaml
 

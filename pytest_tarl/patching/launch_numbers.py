@@ -1,4 +1,4 @@
-"""Find the numbers of a launch file that determine a parameter."""
+"""Find the numbers in a launch file that determine a parameter."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 DEEPEST = 20  # maximum number of names and arguments between a parameter and a number
 _NUMERAL = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
 _TRUTH = {"true": True, "false": False}
-# functions that return their first argument, perhaps converted to another type
+# functions that return their first argument, possibly converted to another type
 _SAME = ("float", "int", "str", "ParameterValue", "TextSubstitution")
 
 
@@ -21,9 +21,9 @@ class _NoNumberError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Numeral:
-    """A number in a launch file, as a node of its syntax tree, that determines the value of a parameter.
+    """A number in a launch file that determines a parameter, as a node of the syntax tree.
 
-    To make the parameter f times as large, the number must be made (1 + (f - 1) · `share`) times as large.
+    To multiply the parameter by f, multiply the number by (1 + (f - 1) · `share`).
     """
 
     node: ast.expr
@@ -37,7 +37,7 @@ def key_of(name: str) -> str:
 
 
 def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
-    """Yield the numbers that determine the parameters `key`."""
+    """Yield the numbers that determine parameters named `key`."""
     names = _Names.of(tree)
     for expression in _expressions(key, tree):
         found = _written(expression)
@@ -51,7 +51,7 @@ def numerals(key: str, tree: ast.Module) -> Iterator[Numeral]:
 
 
 def computed(key: str, tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions of parameters `key` without a changeable number."""
+    """Yield the expressions for parameters named `key` that have no number to change."""
     names = _Names.of(tree)
     for expression in _expressions(key, tree):
         try:
@@ -64,7 +64,7 @@ def computed(key: str, tree: ast.Module) -> Iterator[ast.expr]:
 
 @dataclass
 class _Names:
-    """Values of names and launch arguments with one assignment."""
+    """The values of names and launch arguments that are assigned once."""
 
     assigned: dict[str, ast.expr] = field(default_factory=dict)
     arguments: dict[str, ast.expr] = field(default_factory=dict)
@@ -100,7 +100,7 @@ def _single(found: Mapping[str, list[ast.expr | None]]) -> dict[str, ast.expr]:
 
 
 def _expressions(key: str, tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions of the parameters `key` in order."""
+    """Yield the expressions for parameters named `key`, in order."""
     found: list[ast.expr] = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
@@ -119,7 +119,7 @@ def _is_named(node: ast.expr, key: str) -> bool:
 
 
 def _determining(expression: ast.expr, names: _Names) -> Iterator[Numeral]:
-    """Yield the numbers that an expression scales linearly. Raises _NoNumberError."""
+    """Yield the numbers that an expression scales linearly. Raise _NoNumberError."""
     found: dict[int, tuple[ast.expr, int]] = {}
     whole = _value(expression, names, {}, found)
     for node, _ in sorted(found.values(), key=lambda one: one[1]):
@@ -139,9 +139,9 @@ def _value(
     found: dict[int, tuple[ast.expr, int]],
     depth: int = 0,
 ) -> float:
-    """Return the value of an expression. `given` replaces numbers; its keys are the identities of their nodes.
+    """Return the value of an expression; `given` replaces numbers, by the id of their nodes.
 
-    Adds each number with its distance from the expression to `found`. Raises _NoNumberError.
+    Add each number to `found`, with its distance from the expression. Raise _NoNumberError.
     """
     if depth > DEEPEST:
         raise _NoNumberError
@@ -156,7 +156,7 @@ def _value(
     if isinstance(node, ast.BinOp):
         left, right = (_value(one, names, given, found, depth) for one in (node.left, node.right))
         return _operated(node.op, left, right)
-    # launch joins a list of substitutions into one text; here, the list has only one element
+    # launch joins a list of substitutions into one text; this list has only one element
     if isinstance(node, ast.List) and len(node.elts) == 1:
         return _value(node.elts[0], names, given, found, depth)
     if isinstance(node, ast.Call) and _function(node) == "LaunchConfiguration":
@@ -181,7 +181,7 @@ def _operated(operator: ast.operator, left: float, right: float) -> float:
 
 
 def _written(node: ast.expr) -> bool | int | float | None:
-    """Return the number of a literal or string, or None."""
+    """Return the number in a literal or string, or None."""
     sign, inner = 1, node
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         sign, inner = -1, node.operand
@@ -200,7 +200,7 @@ def _written(node: ast.expr) -> bool | int | float | None:
 
 
 def _function(call: ast.Call) -> str:
-    """Return the last part of the name of a called function."""
+    """Return the last part of a called function's name."""
     function = call.func
     return (
         function.attr

@@ -1,4 +1,4 @@
-"""Merge patches of the same text, or report the conflicting lines."""
+"""Merge patches of the same text, or report the lines on which they conflict."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.patching.same_lines import agreed
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Two patches that conflict on one line; `line` counts from 1."""
+    """Two patches that conflict on a line; `line` counts from 1."""
 
     file: str
     line: int
@@ -28,7 +28,7 @@ class Conflict:
         )
 
 
-CONSTANT = "constant"  # key of the header line that says where a changed constant is defined
+CONSTANT = "constant"  # header key that says where a changed constant is defined
 
 
 def constants(patch: Patch) -> list[str]:
@@ -55,7 +55,7 @@ def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
 
 
 def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
-    """Return a text with all replacements applied. Raise RepairError."""
+    """Return a text with all replacements made. Raise RepairError."""
     lines, result, at = split_lines(content), list[bytes](), 0
     for one in _in_order(wanted):
         if tuple(lines[one.start : one.end]) != one.old or one.start < at:
@@ -79,7 +79,7 @@ def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
 
 
 def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> str:
-    """Return one diff for several patches; `originals` maps file names to the contents before the patches."""
+    """Return one diff for several patches; `originals` maps file names to contents before the patches."""
     texts = {}
     for name, original in originals.items():
         files = [file for patch in patches for file in patch.files if file.name == name]
@@ -119,7 +119,7 @@ def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
 
 
 def _clash(one: Replacement, other: Replacement) -> bool:
-    """Return whether two replacements overlap. Pure insertions never overlap anything."""
+    """Return whether two replacements overlap; pure insertions never do."""
     if one == other or agreed(one, other) is not None:
         return False
     return one.start < other.end and other.start < one.end

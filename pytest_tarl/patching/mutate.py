@@ -1,4 +1,4 @@
-"""New values of constants at their uses (see `rewriting.py`)."""
+"""New values for constants where they are used (see `rewriting.py`)."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Mutation:
-    """A new value for an operand at its use.
+    """A new value for an operand.
 
-    An operand is a use of a constant. For a literal, `value` is the new value. For other operands, `value` is a factor
-    on the use, or a summand if the constant is zero. A boolean operand is flipped. If `place` is set, the change is
-    made there, at the constant's definition, and not at the use.
+    An operand is a use of a constant. For a literal, `value` is the new value. For any other operand, it is a factor on
+    the use, or a summand if the constant is zero. A boolean operand is flipped. If `place` is set, the constant is
+    changed there, where it is defined, instead of at the use.
     """
 
     operand: Operand
     value: float | int | bool
     place: Place | None = None
-    # set for a structural repair, whose operand is an expression and whose value is a factor
+    # set for a structural repair: the operand is then an expression, and the value a factor
     form: Form | None = None
     # the scale on which the search moves the operand
     chart: Chart | None = field(default=None, compare=False)
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
-    """Return the mutation of an operand by a factor, or None if it changes nothing.
+    """Return the change of an operand by a factor, or None if it has no effect.
 
-    A zero becomes `factor - 1`, or `1 - 1/factor` for factors below 1, so that the factors f and 1/f are symmetric.
-    With `integral` (see `is_integral`), an integer remains an integer and changes by at least 1.
+    A zero becomes `factor - 1`, or `1 - 1/factor` for factors below 1, so that f and 1/f are symmetric. With `integral`
+    (see `is_integral`), an integer stays an integer and changes by at least 1.
     """
     value = operand.value
     if isinstance(value, bool):
@@ -64,7 +64,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 def stepped(
     operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation for a step on a chart, or for a factor; None without a change."""
+    """Return the mutation for a step on a chart, or by a factor without a chart; None if it has no effect."""
     if chart is None or operand.value is None:
         return mutate(operand, step)
     by = chart.factor(float(operand.value), step)
@@ -82,7 +82,7 @@ def to_step(
 
 
 def step_of(mutation: Mutation) -> float | None:
-    """Return the step of a mutation on its chart, or None if there is no chart or no such step."""
+    """Return a mutation's step on its chart; None without a chart or such a step."""
     constant = mutation.operand.value
     if mutation.chart is None or constant is None:
         return None
@@ -92,7 +92,7 @@ def step_of(mutation: Mutation) -> float | None:
 
 
 def located(mutation: Mutation) -> Mutation:
-    """Add the place in the file to a mutation of a file's parameter."""
+    """Add the place in the file to the mutation of a parameter in a file."""
     operand = mutation.operand
     if isinstance(operand, ParameterInFile) and mutation.place is None:
         return replace(mutation, place=operand.place)
@@ -100,7 +100,7 @@ def located(mutation: Mutation) -> Mutation:
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether an operand must stay an integer, such as an index."""
+    """Return whether an operand must stay an integer, for example as an index."""
     source = analysed_document(analysis, operand.span.path)
     return isinstance(operand.value, int) and needs_integer(source, source.find(operand.span))
 
@@ -111,7 +111,7 @@ def needs_integer(source: Document, node: ast.expr) -> bool:
 
 
 def analysed_document(analysis: Analysis, path: str) -> Document:
-    """Return an analysed file as a document. Raise RepairError if the file was not analysed."""
+    """Return an analysed file as a document. Raise RepairError if it was not analysed."""
     if path not in analysis.sources:
         raise RepairError(f"{path} is not among the analysed files: add it to the nodes of the test.")
     return document(path, analysis.sources[path])
@@ -132,7 +132,7 @@ def redefinition(mutation: Mutation) -> float | int | bool:
 
 
 def form_values(mutation: Mutation) -> dict[str, float]:
-    """Return a structural mutation's parameters, the searched one scaled by its value."""
+    """Return the parameters of a structural mutation, with the searched one scaled by its value."""
     if mutation.form is None:
         return {}
     values = dict(mutation.form.defaults)
@@ -142,7 +142,7 @@ def form_values(mutation: Mutation) -> dict[str, float]:
 
 
 def _literal(operand: Operand, value: float, wanted: float, integral: bool) -> Mutation | None:
-    """Return the mutation of a literal; an integer remains an integer if possible."""
+    """Return the mutation of a literal; an integer stays an integer if possible."""
     new: float | int = rounded(wanted)
     if isinstance(value, int) and integral:
         new = round(new) if round(new) != value else value + (1 if wanted > value else -1)
@@ -158,7 +158,7 @@ def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None
 
 
 def _step(factor: float) -> float:
-    """Return the value of a zero after a factor, with opposite values for f and 1/f."""
+    """Return what a factor makes of zero, with opposite values for f and 1/f."""
     size = abs(factor)
     if size < 1e-9:
         return 0.0

@@ -1,8 +1,8 @@
-"""Find numbers that may define a constant that the analysis cannot follow. They are found by the constant's name.
+"""Find numbers, by name, that may define a constant that the analysis cannot follow.
 
-Three examples: for `args.gain`, the default in `add_argument("--gain", default=2.0)`; if a loop reads a table, its
-entry `("gain", 2.0)`; for `C[1]`, the second number of `C = array([1.0, 2.0])`. Whether the program really uses a
-number must be tested.
+Examples: for `args.gain`, the default in `add_argument("--gain", default=2.0)`; for a table that a loop reads, its
+entry `("gain", 2.0)`; for `C[1]`, the second number of `C = array([1.0, 2.0])`. Only a test can show whether the
+program really uses a number.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tarl_lint.model import Operand
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
-OPTION = "add_argument"  # method of argparse that declares an option
+OPTION = "add_argument"  # argparse method that declares an option
 PAIR = 2  # minimum number of elements of a table entry: a name and a number
 
 
 def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
-    """Return the numbers that may define an operand. Those in its own expression and file come first.
+    """Return the numbers that may define an operand, those in its own expression and file first.
 
-    Zeros are left out. If the operand's value is known, numbers with other values are left out, too.
+    Zeros are left out. If the operand's value is known, so are numbers with other values.
     """
     found: dict[Place | None, None] = {}
     name = _name(analysis, operand)
@@ -45,7 +45,7 @@ def named_numbers(analysis: Analysis, operand: Operand) -> list[Place]:
 
 
 def _inside(source: Document, own: ast.expr) -> Iterator[Place | None]:
-    """Yield the only number in a call that reads a constant by name."""
+    """Yield the number of a call that reads a constant by name, if it is the only one."""
     given = [*own.args, *(one.value for one in own.keywords)] if isinstance(own, ast.Call) else []
     texts = strings(given)
     numbers = [one for one in given if _is_number(one)]
@@ -87,7 +87,7 @@ def _name(analysis: Analysis, operand: Operand) -> str:
 
 
 def _numbers(node: ast.AST, name: str) -> Iterator[ast.expr]:
-    """Yield the numbers that code assigns to a name by an option, a table entry or a keyword."""
+    """Yield the numbers that code assigns to a name in an option, a table entry or a keyword."""
     if isinstance(node, ast.Call):
         named = {one.arg: one.value for one in node.keywords}
         if called(node) == OPTION and name in _destinations(node, named):

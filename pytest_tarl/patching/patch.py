@@ -1,4 +1,4 @@
-"""Patches as unified diffs, with any line ending and encoding."""
+"""Write patches as unified diffs, for files with any line ending and encoding."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from pytest_tarl.files import advice_on, slug
 from tarl_lint.files import write_atomically
 
 Opcode = tuple[str, int, int, int, int]
-CONTEXT = 3  # number of unchanged lines around a change
-BASE = "paths are relative to"  # header key of the patch's base folder
-SEAL = "digest of all other lines"  # header key of the hash that reveals edited or damaged patches
+CONTEXT = 3  # unchanged lines around a change
+BASE = "paths are relative to"  # header key of the base folder
+SEAL = "digest of all other lines"  # header key of the hash that detects edited or damaged patches
 TITLE = "Repair by tarl "
-PARTIAL = ".partial"  # suffix of files with a change that was not accepted as a repair
-QUOTE = b"| "  # prefix of each line of a PARTIAL file; it prevents other tools from applying the change
+PARTIAL = ".partial"  # suffix of files with a change that was rejected as a repair
+QUOTE = b"| "  # prefix of each line of a PARTIAL file, so that other tools cannot apply the change
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
 def unified_diff(
     originals: Mapping[Path, bytes], changed: Mapping[Path, str], root: Path, header: Sequence[str]
 ) -> str:
-    """Return the diff from the original bytes of files to their new texts, preceded by comment lines.
+    """Return the diff from files' original bytes to their new texts, after a header of comment lines.
 
-    Paths are relative to the top of the git repository that contains the files, or else to `root`, because `git apply`
-    silently skips other paths. Bytes that are not UTF-8 become surrogate characters, which `readable` replaces. Raise
-    RepairError if the files are in several repositories or if their encoding cannot represent the new text.
+    Paths are relative to the top of the files' git repository or, without one, to `root`, because `git apply` silently
+    skips other paths. Bytes that are not UTF-8 become surrogate characters, which `readable` replaces. Raise
+    RepairError if the files are in several repositories, or if their encoding cannot represent the new text.
     """
     base = _base([path.resolve() for path in changed], root.resolve())
     texts = {
@@ -53,12 +53,12 @@ def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequ
 
 
 def seal(content: bytes) -> str:
-    """Return the hash of a patch without its hash line."""
+    """Return the hash of a patch, without its own hash line."""
     return hashlib.sha256(content).hexdigest()
 
 
 def readable(diff: str) -> str:
-    """Return a printable diff: bytes that are not UTF-8 become replacement characters."""
+    """Return a printable diff, with replacement characters for bytes that are not UTF-8."""
     return diff.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
@@ -94,23 +94,23 @@ def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path
 
 
 def unquoted(content: bytes) -> bytes:
-    """Return a patch without the quotes of `write_partial`."""
+    """Return a patch without the prefixes of `write_partial`."""
     if not content.startswith(QUOTE):
         return content
     return b"".join(line.removeprefix(QUOTE) for line in split_lines(content))
 
 
 def apply_command(patch: Path, cwd: Path) -> str:
-    """Return the shell command that applies a patch of `<root>/.tarl/patches` if it is run in `cwd`.
+    """Return the shell command that applies a patch of `<root>/.tarl/patches` when run in `cwd`.
 
-    In another folder, the command fails with a message that it cannot find the patch.
+    In any other folder, the command fails because it does not find the patch.
     """
     here = cwd.resolve()
     text = patch.read_bytes().decode("utf-8", "surrogateescape")
     base = (patch.resolve().parents[2] / _stated_base(text)).resolve()
     if shutil.which("git") is None:
         return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
-    # git in a subfolder silently skips files outside the subfolder and exits with 0
+    # in a subfolder, git silently skips files outside it and exits with 0
     if base == here:
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])
@@ -122,12 +122,12 @@ def blob_id(content: bytes) -> str:
 
 
 def split_lines(content: bytes) -> list[bytes]:
-    """Split lines as git does: after line feeds only."""
+    """Split lines as git does, after line feeds only."""
     return re.findall(rb"[^\n]*\n|[^\n]+", content)
 
 
 def _base(files: Sequence[Path], root: Path) -> Path:
-    """Return the base folder of a patch's paths. Raise RepairError."""
+    """Return the folder that a patch's paths are relative to. Raise RepairError."""
     tops = {_git_top(file) for file in files}
     if len(tops) > 1:
         names = ", ".join(str(file) for file in files)
@@ -152,14 +152,14 @@ def _shown(path: Path, start: Path) -> str:
 
 
 def _stated_base(text: str) -> str:
-    """Return the base folder stated in a patch's header (default: ".")."""
+    """Return the base folder in a patch's header (default: ".")."""
     start = f"# {BASE}: "
     stated = (line.removeprefix(start) for line in text.split("\n") if line.startswith(start))
     return next(stated, ".")
 
 
 def _encoded(path: Path, original: bytes, text: str) -> bytes:
-    """Encode the new text like the file. Raise RepairError."""
+    """Encode the new text in the file's encoding. Raise RepairError."""
     encoding, _ = tokenize.detect_encoding(io.BytesIO(original).readline)
     text = text.removeprefix("\ufeff")
     if b"\r\n" in original and "\r\n" not in text:
@@ -174,7 +174,7 @@ def _encoded(path: Path, original: bytes, text: str) -> bytes:
 
 
 def _with_endings(original: str, text: str) -> str:
-    """Keep line endings; new lines get the file's most frequent one."""
+    """Keep line endings; new lines get the most frequent one of the file."""
     before, after = _lines(original), _lines(text)
     usual = "\r\n" if original.count("\r\n") * 2 > original.count("\n") else "\n"
     bare = [line.replace("\r\n", "\n") for line in before]
@@ -188,7 +188,7 @@ def _with_endings(original: str, text: str) -> str:
 
 
 def _file_diff(name: str, before: bytes, after: bytes) -> str:
-    """Return the diff of one file; its `index` line lets git do three-way merges."""
+    """Return the diff of one file; its `index` line enables git's three-way merge."""
     old, new = (_lines(content.decode("utf-8", "surrogateescape")) for content in (before, after))
     end = "\t" if " " in name else ""
     lines = [
@@ -227,5 +227,5 @@ def _line(sign: str, line: str) -> str:
 
 
 def _lines(text: str) -> list[str]:
-    """Split lines as git does: after line feeds only."""
+    """Split lines as git does, after line feeds only."""
     return re.findall(r"[^\n]*\n|[^\n]+", text)

@@ -23,7 +23,7 @@ _HEADER = (  # lines of a file after `diff --git`; git appends a tab to names wi
     re.compile(rb"\+\+\+ b/([^\t\n]+)\t?\n"),
 )
 
-# folders that no patch may change, because git and TARL run files in them
+# folders that no patch may change, because git and TARL run files from them
 CLOSED = frozenset({".git", ".tarl"})
 
 
@@ -38,7 +38,7 @@ class Patch:
 
     @property
     def name(self) -> str:
-        """Return the name for messages."""
+        """Return the name used in messages."""
         return self.path.name
 
     @property
@@ -48,7 +48,7 @@ class Patch:
 
     @property
     def root(self) -> Path | None:
-        """Return the folder that contains `.tarl`, or None if the patch is elsewhere."""
+        """Return the folder that contains `.tarl`; None if the patch is elsewhere."""
         home = Path(os.path.normpath(self.path.absolute())).parent  # keep symbolic links: `.tarl` may be one
         inside = (home.name, home.parent.name) == ("patches", ".tarl")
         return home.parent.parent if inside else None
@@ -64,7 +64,7 @@ class Patch:
 
 
 def read(path: Path) -> Patch:
-    """Read a patch. Raise RepairError if it is not a whole patch of TARL."""
+    """Read a patch. Raise RepairError if it is not a complete patch of TARL."""
     try:
         content = unquoted(read_regular(path))
     except OSError as problem:
@@ -95,7 +95,7 @@ def read(path: Path) -> Patch:
 
 
 def _whole(content: bytes, seals: Sequence[str]) -> bool:
-    """Return whether the hash matches; True for a patch without one."""
+    """Return whether the hash matches; True for a patch without a hash."""
     if not seals:
         return True
     line = f"# {SEAL}: {seals[0]}\n".encode("utf-8", "surrogateescape")
@@ -103,14 +103,14 @@ def _whole(content: bytes, seals: Sequence[str]) -> bool:
 
 
 def _inside(name: str) -> bool:
-    """Return whether a name stays below its base and outside `CLOSED`."""
+    """Return whether a path stays below its base and outside `CLOSED`."""
     parts = name.split("/")
     odd = "\\" in name or not name.isprintable()
     return not odd and not {"", ".", ".."} & set(parts) and not in_closed_folder(parts)
 
 
 def in_closed_folder(parts: Iterable[str]) -> bool:
-    """Return whether a path's part is a closed folder, in any case."""
+    """Return whether a part of a path is a closed folder, in upper or lower case."""
     return not CLOSED.isdisjoint(map(str.lower, parts))
 
 
@@ -129,7 +129,7 @@ def _file(body: bytes) -> FilePatch:
 
 
 def _hunks(lines: Sequence[bytes]) -> Iterator[Hunk]:
-    """Yield the hunks. A line with a backslash says that the line before it has no line ending. Raise ValueError."""
+    """Yield the hunks. A line with a backslash means that the previous line has no line ending. Raise ValueError."""
     starts = [at for at, line in enumerate(lines) if line.startswith(b"@@ ")]
     for at, end in pairwise((*starts, len(lines))):
         found = _HUNK.fullmatch(lines[at])

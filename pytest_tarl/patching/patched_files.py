@@ -1,4 +1,4 @@
-"""Locate the files of a patch, and refuse files outside the project."""
+"""Locate the files of a patch; refuse files outside the project."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.patching.patch_reader import Patch, in_closed_folder
 def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
     """Return the project's folder and the patched files in order, with links resolved.
 
-    The project is `directory`, or else the git repository around `.tarl`, or else the folder that contains `.tarl`.
-    Raise RepairError if a file does not exist, and RefusedError if a file lies outside the project.
+    The project is `directory` if given. Otherwise it is the git repository around `.tarl` or, without one, the folder
+    that contains `.tarl`. Raise RepairError if a file does not exist, and RefusedError if it is outside the project.
     """
     try:
         return _located(patch, directory)
@@ -56,7 +56,7 @@ def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
 
 
 def _project(folder: Path) -> Path:
-    """Return the git repository around a folder, or else the folder."""
+    """Return the git repository around a folder; without one, the folder itself."""
     return next((each for each in (folder, *folder.parents) if (each / ".git").exists()), folder)
 
 

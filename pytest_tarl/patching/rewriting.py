@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 def conditional_definition(mutations: Sequence[Mutation], guard: Guard) -> bool:
-    """Return whether a guard would apply to a number at its definition."""
+    """Return whether a guard would have to apply to a number at its definition."""
     placed = any(located(mutation).place is not None for mutation in mutations)
     return placed and not all(map(always, guard.conjuncts))
 
@@ -56,10 +56,10 @@ def rewrite(
     topics: Mapping[str, str],
     texts: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, str]:
-    """Apply mutations under a guard; return the new text of every changed file, by path.
+    """Apply mutations under a guard; return path → new text for every changed file.
 
-    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts`
-    holds further files that define constants. Raise RepairError if a change cannot be written.
+    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that have to be added. `texts`
+    has further files that define constants. Raise RepairError if a change cannot be written.
     """
     mutations = [located(mutation) for mutation in mutations]
     if conditional_definition(mutations, guard):
@@ -94,9 +94,9 @@ def rewrite(
 def _formed(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
-    """Yield each form (template at an expression) once, with the parameters from all its mutations.
+    """Yield each form (a template at an expression) once, with the parameters from all its mutations.
 
-    If the partner of a form is the same expression for another axis, the form is yielded for both axes.
+    If a form's partner is the same expression for another axis, the form is yielded for both axes.
     """
     found: dict[tuple[Span, Template, str, Span | None], tuple[Mutation, dict[str, float]]] = {}
     for mutation in mutations:
@@ -129,7 +129,7 @@ def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | i
 def guard_text(
     guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
 ) -> str:
-    """Return the code of the guard at the first mutation, or ""."""
+    """Return the code of the guard at the first mutation, or an empty text."""
     conditions = Conditions(analysis, guard, topics)
     for source, node, _, _, site in _formed(analysis, mutations[:1]):
         return conditions.at(source, site, source.statement(node))
@@ -141,14 +141,14 @@ def guard_text(
 
 @dataclass(frozen=True)
 class Use:
-    """A change of one use of a constant, with its site (statement)."""
+    """A change to one use of a constant, with its site (statement)."""
 
     site: SiteId
     change: Change
 
 
 class Conditions:
-    """The code of a guard for each place, and its subscriptions."""
+    """The code of a guard at each place, and the subscriptions that it needs."""
 
     def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -163,7 +163,7 @@ class Conditions:
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the code of a sensor's value, 0 before the first message. Raise RepairError."""
+        """Return the code for a sensor's value, which is 0 before the first message. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(
@@ -213,7 +213,7 @@ def _file_edits(
 def _by_file(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> list[tuple[Document, list[tuple[ast.stmt, list[Use]]]]]:
-    """Group the mutated uses by file and statement, in the order of the text."""
+    """Group the changed uses by file and statement, in the order of the text."""
     files: dict[str, dict[ast.stmt, list[Use]]] = {}
     for mutation in sorted(mutations, key=lambda each: each.operand.span):
         source = analysed_document(analysis, mutation.operand.span.path)

@@ -1,4 +1,4 @@
-"""Reconcile two changes of the same lines."""
+"""Combine two changes of the same lines, if possible."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.patching.changes import Lines, Replacement
 
 Imports = dict[
     tuple[str, int] | None, dict[str, None]
-]  # (module, level), None for `import …` → names as written
+]  # (module, level), or None for `import …` → names as written
 
 
 def agreed(one: Replacement, other: Replacement) -> Replacement | None:
@@ -35,7 +35,7 @@ def _within(narrow: Lines, wide: Lines) -> bool:
 
 
 def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
-    """Return the imports of each text, or None if it contains anything else."""
+    """Return the imports of each text, or None if a text contains anything else."""
     found = []
     for lines in texts:
         imports: Imports = {}
@@ -63,7 +63,7 @@ def _added(before: Imports, after: Imports) -> bool:
 
 
 def _written(first: Imports, second: Imports, ending: bytes) -> list[bytes]:
-    """Return the imports of both texts, sorted if both texts are sorted."""
+    """Return the imports of both texts; sorted if both texts are."""
     lines = []
     for where in {**first, **second}:
         mine, theirs = list(first.get(where, ())), list(second.get(where, ()))

@@ -1,4 +1,4 @@
-"""Choose where a subscription that a repair adds stores its values: on the instance or in the module."""
+"""Choose where an added subscription stores its values: on the instance or in the module."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pytest_tarl.patching.document import Document, Edit, Function
 
 @dataclass(frozen=True)
 class Store:
-    """A place to store values: attributes of the instances of `owner`, or module globals if there is no owner.
+    """A place to store values: attributes on instances of `owner`, or module globals if it is None.
 
-    `places` are the syntax nodes that read the values. `module` is the dotted name under which other modules import
-    this one if they subscribe.
+    `places` are the syntax nodes that read the values. `module` is the dotted name by which other modules import this
+    one if they subscribe.
     """
 
     source: Document
@@ -33,7 +33,7 @@ class Store:
 
 @dataclass(frozen=True)
 class Callback:
-    """A function that a repair adds. It stores fields of a message in variables (`names`: field → variable)."""
+    """A function that a repair adds; it stores message fields in variables (`names`: field → variable)."""
 
     store: Store
     anchor: Anchor
@@ -42,7 +42,7 @@ class Callback:
     annotation: str = ""
 
     def lines(self, instance: str = "") -> list[str]:
-        """Return the lines of the function. If `instance` is given, the function is a method."""
+        """Return the lines of the function; with `instance`, it is a method."""
         unit = self.store.source.unit
         argument = "message" if "message" not in self.names.values() else "received"
         typed = f"{argument}: {self.annotation}" if self.annotation else argument
@@ -55,7 +55,7 @@ class Callback:
 
 
 def store_edits(callbacks: Sequence[Callback]) -> list[tuple[str, Edit]]:
-    """Return the edits, with their paths, that add the callbacks and their variables."""
+    """Return the edits (with paths) that add the callbacks and their variables."""
     edits: list[tuple[str, Edit]] = []
     modules: dict[str, list[Callback]] = {}
     for callback in callbacks:
@@ -70,13 +70,13 @@ def store_edits(callbacks: Sequence[Callback]) -> list[tuple[str, Edit]]:
 
 
 def first_statement(definition: Function | ast.ClassDef) -> ast.stmt:
-    """Return the first statement after the docstring, or the docstring if there is no other."""
+    """Return the first statement after the docstring; the docstring itself if there is no other."""
     documented = ast.get_docstring(definition, clean=False) is not None and len(definition.body) > 1
     return definition.body[1 if documented else 0]
 
 
 def _instance_edits(callback: Callback, owner: ast.ClassDef) -> list[Edit]:
-    """Initialise attributes before any code reads them, and put the callback after the method that subscribes."""
+    """Initialise attributes before any code reads them; put the callback after the method that subscribes."""
     source, method = callback.store.source, callback.anchor.source.method(callback.anchor.statement)
     if method is None:
         raise RepairError(f"{source.path}: {owner.name} cannot subscribe outside its methods.")
@@ -101,7 +101,7 @@ def _attributes(callback: Callback, owner: ast.ClassDef, method: Function, insta
 def _first_reader(
     callback: Callback, owner: ast.ClassDef, constructor: Function, instance: str
 ) -> ast.stmt | None:
-    """Return the first statement of a constructor that may read an attribute, directly or through a call."""
+    """Return a constructor's first statement that may read an attribute, directly or through a call."""
     methods = {f"{instance}.{each.name}" for each in owner.body if isinstance(each, Function)}
     for statement in constructor.body:
         inside = list(ast.walk(statement))
@@ -116,7 +116,7 @@ def _first_reader(
 def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
     """Put variables and functions before the first definition, or before an earlier statement that needs them.
 
-    If there are module variables just before this place, the new variables follow these.
+    If there are module variables just before this place, add the new ones after them.
     """
     source = callbacks[0].store.source
     start = _before_definitions(source, callbacks)
@@ -134,7 +134,7 @@ def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
 
 
 def _before_definitions(source: Document, callbacks: Sequence[Callback]) -> int:
-    """Return the offset of the first definition or the first statement that needs the callbacks."""
+    """Return the offset of the first definition, or of an earlier statement that needs the callbacks."""
     needing = [place for each in callbacks for place in each.store.places if place in source.parents]
     needing += [each.anchor.statement for each in callbacks if each.anchor.source is source]
     definitions = [each for each in source.tree.body if isinstance(each, Function | ast.ClassDef)]
@@ -156,7 +156,7 @@ def _state(source: Document, limit: int) -> ast.stmt | None:
 
 
 def _above_comments(source: Document, start: int) -> int:
-    """Move up over a comment that belongs to a line, but not into the first lines of the file."""
+    """Move up over a line's comment, but not into the first lines of the file."""
     index = source.line_starts.index(start)
     while index > 2 and source.text[source.line_starts[index - 1] :].lstrip(" \t").startswith("#"):
         index -= 1
@@ -164,7 +164,7 @@ def _above_comments(source: Document, start: int) -> int:
 
 
 def _field(message: str, field: str) -> str:
-    """Return the expression for a dotted field. A number in it is an index into a sequence, whose length is checked."""
+    """Return the expression for a dotted field; a number in it is an index, and the length is checked."""
     code, checks = message, list[str]()
     for part in field.split("."):
         if part.lstrip("-").isdigit():

@@ -1,4 +1,4 @@
-"""Apply a repair template to an expression, with state if needed."""
+"""Apply a repair template to an expression, with state if the template needs it."""
 
 from __future__ import annotations
 
@@ -29,23 +29,23 @@ class Form:
     partner: Span | None = None
     sensor: Sensor | None = None
     field: str = ""  # for a published message: the field to change, such as `linear.x`
-    sibling: Sensor | None = None  # the sensor of the partner, if it has one of its own
-    variable: str = ""  # a variable of the program that takes the place of the sensor
+    sibling: Sensor | None = None  # the partner's sensor, if it has its own
+    variable: str = ""  # a variable of the program that is used instead of a sensor
 
     def target(self, code: str) -> str:
-        """Return the code that the form changes: the expression itself, or a field of it."""
+        """Return the code to change: the expression, or a field of it."""
         return f"{code}.{self.field}" if self.field else code
 
 
 @dataclass(frozen=True)
 class Keeper:
-    """Where a node stores state between calls."""
+    """Where a node keeps state between calls."""
 
     prefix: str
     place: int
     indent: str
-    behind: str = ""  # text to write after the new lines
-    declare: int | None = None  # offset at which a function declares its global variables
+    behind: str = ""  # text after the new lines
+    declare: int | None = None  # where a function declares its global variables (offset)
     declare_indent: str = ""
 
 
@@ -73,13 +73,13 @@ def form_edits(
         taken.add(states[name])
         fill[name] = keeper.prefix + states[name]
     found = _written(_Place(source, statement, node, form, condition), fill)
-    if keeper is not None:  # declarations of state come first, because `global` has to precede the use
+    if keeper is not None:  # state is declared first, because `global` has to precede the use
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 
 
 def _numbers(template: Template, values: Mapping[str, float]) -> dict[str, str]:
-    """Return the code of each parameter value; counts are integers."""
+    """Return each parameter value as code; counts are integers."""
     counts = {one.name for one in template.parameters if one.grid == 1.0}
     return {name: number(round(value) if name in counts else float(value)) for name, value in values.items()}
 
@@ -95,7 +95,7 @@ class _Place:
     condition: str
 
     def named(self, name: str, fill: Mapping[str, str]) -> tuple[list[str], str]:
-        """Return the lines that a form adds and the new expression."""
+        """Return the lines that a form adds, and the new expression."""
         fill = {**fill, "x": name}
         new = filled(self.form.template.expression, fill)
         lines = [filled(line, fill) for line in self.form.template.lines]
@@ -129,7 +129,7 @@ def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Change a value after its assignment. Raise RepairError."""
+    """Change a value after it is assigned. Raise RepairError."""
     source, statement = place.source, place.statement
     target = _target(statement)
     if target is None or statement.value is not place.node or not source.alone(statement):  # type: ignore[attr-defined]
@@ -216,7 +216,7 @@ def _state_edits(keeper: Keeper, states: Sequence[tuple[str, str]]) -> list[Edit
 
 
 def _keeper(source: Document, statement: ast.stmt) -> Keeper:
-    """Return where state is stored: instance, loop or global."""
+    """Return where to keep state: on the instance, in a loop or in a global."""
     method = source.method(statement)
     if method is not None and source.function(statement) is method[1]:
         owner, _, instance = method
@@ -248,7 +248,7 @@ def _keeper(source: Document, statement: ast.stmt) -> Keeper:
 
 
 def _first(body: Sequence[ast.stmt]) -> ast.stmt:
-    """Return the first real statement of a constructor. Raise RepairError."""
+    """Return a constructor's first statement that does something. Raise RepairError."""
     for statement in body:
         value = statement.value if isinstance(statement, ast.Expr) else None
         docstring = isinstance(value, ast.Constant) and isinstance(value.value, str)
@@ -267,7 +267,7 @@ def _can_stand_before(source: Document, statement: ast.stmt) -> bool:
 
 
 def _target(statement: ast.stmt) -> ast.expr | None:
-    """Return the single name or attribute that a statement assigns to, or None."""
+    """Return the only name or attribute that a statement assigns, or None."""
     target = None
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         target = statement.targets[0]
@@ -277,7 +277,7 @@ def _target(statement: ast.stmt) -> ast.expr | None:
 
 
 def _short(statement: ast.stmt, node: ast.expr) -> str:
-    """Return a short name for a value: that of its target, of the name itself or of the left side of a comparison."""
+    """Return a short name for a value, from its target or from the left side of a comparison."""
     named = node.left if isinstance(node, ast.Compare) else node
     if getattr(statement, "value", None) is node or not isinstance(node, ast.Name | ast.Attribute):
         named = _target(statement) or named
@@ -286,7 +286,7 @@ def _short(statement: ast.stmt, node: ast.expr) -> str:
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return the sides of a comparison and its operator; other code gets the operator ""."""
+    """Return both sides of a comparison and its operator, which is empty for other code."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""Export a patch as a SARIF fix, GitHub suggestions or a review."""
+"""Export a patch as a SARIF fix, as GitHub suggestions or as a review."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.patching.patch import BASE, SEAL
 from pytest_tarl.patching.patch_reader import Patch
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-RULE = "tarl-repair"  # the ids TARL001 to TARL999 belong to tarl-lint
+RULE = "tarl-repair"  # TARL001 to TARL999 are rules of tarl-lint
 ROOT = "%SRCROOT%"  # GitHub resolves this to the top of the repository
 _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 
@@ -55,7 +55,7 @@ def sarif(patch: Patch) -> str:
 
 
 def markdown(patch: Patch) -> str:
-    """Return Markdown with the evidence and a `suggestion` block per change."""
+    """Return Markdown with the evidence, and a `suggestion` block for each change."""
     parts = [_evidence(patch)]
     for path, first, last, text in _suggestions(patch):
         lines = f"line {last}" if first == last else f"lines {first} to {last}"
@@ -64,7 +64,7 @@ def markdown(patch: Patch) -> str:
 
 
 def review(patch: Patch) -> str:
-    """Return a review for GitHub's REST API, with a comment per change."""
+    """Return a review for GitHub's REST API, with a comment for each change."""
     comments = [
         {
             "path": path,
@@ -97,7 +97,7 @@ def _escaped(text: str) -> str:
 def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
     """Yield (path, first line, last line, new text) for each change.
 
-    Lines are counted from 1. A pure insertion is yielded as the replacement of a neighbouring line.
+    Lines count from 1. A pure insertion is yielded as a replacement of a neighbouring line.
     """
     for file in patch.files:
         encoding = _encoding(patch, file)
@@ -113,7 +113,7 @@ def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
 
 
 def _block(text: str) -> str:
-    """Return a `suggestion` block whose fence is longer than any fence in the text."""
+    """Return a `suggestion` block; its fence is longer than any fence in the text."""
     longest = max((len(found) for found in re.findall(r"`+", text)), default=0)
     fence = "`" * max(3, longest + 1)
     return f"{fence}suggestion\n{text}\n{fence}"
@@ -131,7 +131,7 @@ def _artifact_change(file: FilePatch, encoding: str) -> dict[str, Any]:
 
 
 def _region(one: Replacement) -> dict[str, int]:
-    """Return the region of whole lines; for a pure insertion, the empty region before the line."""
+    """Return the region of whole lines; for an insertion, the empty region before the line."""
     return {"startLine": one.start + 1, "startColumn": 1, "endLine": one.end + 1, "endColumn": 1}
 
 
@@ -154,7 +154,7 @@ def _version(patch: Patch) -> str:
 
 
 def _encoding(patch: Patch, file: FilePatch) -> str:
-    """Return the encoding of the file, or UTF-8 if the file is not available."""
+    """Return the file's encoding; UTF-8 if the file is not available."""
     path = (patch.root or Path.cwd()) / (patch.base if patch.root else "") / file.name
     try:
         content = path.read_bytes() if path.is_file() else b""

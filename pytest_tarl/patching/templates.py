@@ -1,4 +1,4 @@
-"""Templates of structural repairs: TOML files, each with an example that serves as its test and documentation."""
+"""Templates of structural repairs: TOML files whose examples serve as tests and documentation."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ else:  # pragma: no cover
     import tomli as tomllib
 
 SHIPPED = Path(__file__).parent.parent / "templates"
-OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
+OWN = "tarl_templates"  # folder below pytest's rootdir for the project's own templates
 KINDS = (
     "value",
     "input",
@@ -37,24 +37,24 @@ KINDS = (
 CONSTANT = "constant"  # a constant that follows a sensor or a variable
 TRACKED = "tracked"  # a side of a difference, such as the target in `target - position`
 PAIR = "pair"  # two expressions that differ only in their axis
-FIELD = "field"  # a field of a published message, if several statements build the field
+FIELD = "field"  # a field of a published message that several statements build
 SENT_BY_SENSOR = "sent by sensor"  # a published value
 OF_SENSORS = ("sensor", SENT_BY_SENSOR)  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
-    "",  # parameters with this scale start with their default, unscaled
-    "typical",  # the usual size of the value in the designed world
-    "larger",  # the larger of the value's usual sizes in the designed and in the drifted world
+    "",  # the default itself, unscaled
+    "typical",  # the value's usual size in the designed world
+    "larger",  # the larger of the value's usual sizes in the designed and the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
     "usual",  # the sensor's usual size in the drifted world
     "ratio",  # `larger` divided by the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
 )
-FIXED = "designed"  # the search does not change parameters with this scale
+FIXED = "designed"  # parameters with this scale are not searched
 STRONGER = ("larger", "smaller")
-# values of `without`: the expression must not have this kind of constant at its top level, because the search can
-# change that constant instead
+# Values of `without`: expressions with this kind of constant at their top level are skipped, because the search can
+# change the constant instead.
 WITHOUT = ("", "factor", "term")
-# placeholders of comparisons: the operator, the operator with or without equality, and the reversed operator
+# placeholders of a comparison: its operator, the operator with or without equality, and the reversed operator
 OPERATORS = ("op", "closed", "back")
 _KEYS = {
     "summary",
@@ -75,15 +75,15 @@ _NEGATIVE = re.compile(r"-([0-9][0-9.e+-]*)")
 LEADING = {
     "*": TERM,
     "+": ARITHMETIC,
-}  # operator → lowest precedence that its first operand may have without parentheses
+}  # operator → lowest precedence of a first operand without parentheses
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter to search, with its start value.
+    """A parameter to search, and its start value.
 
-    `stronger` says whether larger or smaller values have more effect. If there is a `grid`, only multiples of it are
-    tried. A `signed` parameter may change its sign.
+    `stronger` says whether larger or smaller values have more effect. With a `grid`, only multiples of it are tried. A
+    `signed` parameter may change its sign.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """The replacement of an expression, the lines to add before it, and the state that they keep between calls."""
+    """The replacement for an expression, the lines to add before it, and the state kept between calls."""
 
     name: str
     summary: str
@@ -107,12 +107,12 @@ class Template:
     state: tuple[tuple[str, str], ...] = ()
     parameters: tuple[Parameter, ...] = ()
     without: str = ""
-    symptoms: tuple[str, ...] = ()  # symptoms that indicate the template (see `pytest_tarl.symptoms`)
+    symptoms: tuple[str, ...] = ()  # symptoms that suggest the template (see `pytest_tarl.symptoms`)
     inside: bool = False  # for sensors: whether the change goes inside a clamp
 
     @property
     def from_first(self) -> bool:
-        """Return whether the state starts from the first value. Then a value that never varies is not changed."""
+        """Return whether the state starts from the first value, so that a value that never varies stays unchanged."""
         return any(initial in ("None", "[]") for _, initial in self.state)
 
     @property
@@ -121,19 +121,19 @@ class Template:
         return any(initial == "0.0" and self.expression == f"{{{name}}}" for name, initial in self.state)
 
     def uses(self, placeholder: str) -> int:
-        """Return how often a placeholder occurs in the lines and the expression."""
+        """Return how often the lines and the expression contain a placeholder."""
         return sum(_PLACEHOLDER.findall(text).count(placeholder) for text in (*self.lines, self.expression))
 
 
 def templates(root: Path) -> tuple[Template, ...]:
-    """Return TARL's templates and those of the project, cheapest first. Raise SettingsError."""
+    """Return the templates of TARL and of the project, cheapest first. Raise SettingsError."""
     files = [*sorted(SHIPPED.glob("*.toml")), *sorted((root / OWN).glob("*.toml"))]
     found = {path.stem: template(path) for path in files}
     return tuple(sorted(found.values(), key=lambda one: one.cost))
 
 
 def template(path: Path) -> Template:
-    """Read a template. Raise SettingsError if the file is not one."""
+    """Read a template. Raise SettingsError if the file is not a template."""
     data = contents(path)
     unknown = sorted(data.keys() - _KEYS)
     if unknown:
@@ -192,7 +192,7 @@ def contents(path: Path) -> Mapping[str, Any]:
 
 
 def filled(text: str, values: Mapping[str, str]) -> str:
-    """Replace the placeholders in a text; add parentheses where the surrounding expression needs them."""
+    """Replace the placeholders in a text, with parentheses where the surrounding expression needs them."""
 
     def put(match: re.Match[str]) -> str:
         code = values[match[1]]
@@ -207,13 +207,13 @@ def filled(text: str, values: Mapping[str, str]) -> str:
 
 
 def _subtracted(values: Mapping[str, str], match: re.Match[str]) -> str:
-    """Write a sum with a negative number as a difference: `- 0.2` instead of `+ -0.2`, also in front of products."""
+    """Write a sum with a negative number as a difference (`- 0.2`, not `+ -0.2`), also before products."""
     negative = _NEGATIVE.fullmatch(values.get(match[1], ""))
     return f"- {negative[1]}" if negative else match[0]
 
 
 def plainly(text: str, values: Mapping[str, str]) -> str:
-    """Return a sentence with its placeholders replaced; unknown placeholders are kept."""
+    """Return a sentence with its placeholders replaced; unknown placeholders stay."""
     return _PLACEHOLDER.sub(lambda match: values.get(match[1], match[0]), text)
 
 

@@ -1,6 +1,6 @@
 """Check that a patched file loses only the lines that the repair changes.
 
-The check does not rely on the positions of the edits. It parses both texts into concrete syntax trees, which include
+The check does not rely on the positions of the edits: it parses both texts into concrete syntax trees, which include
 comments.
 """
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def nothing_lost(path: str, original: str, patched: str, changed: Collection[int]) -> None:
     """Check that all statements and comments are still there, in the same order.
 
-    `changed` are the line numbers (from 1) of statements that the repair rewrites; these may differ. Raise RepairError
-    if the patched text does not parse or loses something.
+    `changed` has the line numbers (from 1) of the statements that the repair rewrites; these may differ. Raise
+    RepairError if the patched text does not parse, or if something is missing.
     """
     import libcst as cst
     from libcst.metadata import MetadataWrapper, PositionProvider

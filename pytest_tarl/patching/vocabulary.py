@@ -1,4 +1,4 @@
-"""Find used names, and similar unused ones."""
+"""Find the names that code uses, and unused names similar to them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def free(base: str, taken: Set[str]) -> str:
 
 @cache
 def names(source: Document) -> frozenset[str]:
-    """Return every name that a module uses in any scope, and the builtins."""
+    """Return every name that a module uses, in any scope, and the builtins."""
     found = set(dir(builtins))
     for node in ast.walk(source.tree):
         if isinstance(node, ast.Name):

@@ -12,8 +12,8 @@ STEPS = 3  # maximum number of assignments between a literal and the place where
 def writers(source: Document, node: ast.expr, code: str) -> list[ast.stmt]:
     """Return the statements of a function that compute the value of `code`, nearest to `node` first.
 
-    `node` is an expression in the function, and `code` is the text of a name or attribute there. Assignments to `code`
-    come first, then assignments to the names that these assignments read.
+    `node` is an expression in the function, and `code` is a name or attribute there. Assignments to `code` come first,
+    followed by assignments to the names that these read.
     """
     function = source.function(source.statement(node))
     if function is None:
@@ -43,7 +43,7 @@ def _parts(target: ast.expr) -> list[ast.expr]:
 
 
 def _read(value: ast.expr) -> set[str]:
-    """Return the names and attributes that an expression reads: `a.b`, but not `a`."""
+    """Return the names and attributes that an expression reads: for `a.b`, this is `a.b` and not `a`."""
     bases = {one.value for one in ast.walk(value) if isinstance(one, ast.Attribute)}
     names = (one for one in ast.walk(value) if isinstance(one, ast.Name | ast.Attribute) and one not in bases)
     return {ast.unparse(one) for one in names}
