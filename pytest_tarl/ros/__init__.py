@@ -1,6 +1,6 @@
-"""Replacements for rospy and rclpy that run in this process: virtual clock, synchronous delivery, no leftover state.
+"""Replacements for rospy and rclpy in this process: virtual clock, synchronous delivery, no state left behind.
 
-Heavy modules are imported when `Ros`, `Bus` or `message_type` is first used.
+Heavy modules are imported only when `Ros`, `Bus` or `message_type` is first used.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Advice on names that a library no longer has, and on undefined names whose import failed in a `try`."""
+"""Advice on names that a library has removed, and on undefined names whose import failed inside a `try`."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _PARTIAL = re.compile("partially initialized module")
 
 
 def removed_name(module: str, text: str) -> str:
-    """Return advice on a name that the library `module` lacks; "" for a module of the user.
+    """Return advice on a name that the library `module` lacks; empty for a module of the user.
 
-    `text` is Python's message.
+    `text` is the message from Python.
     """
     top = sys.modules.get(module.partition(".")[0])
     file = getattr(top, "__file__", None)
@@ -40,7 +40,7 @@ def removed_name(module: str, text: str) -> str:
 
 
 def caught_import(error: NameError, file: str) -> str:
-    """Return advice if the code of `file` imports the undefined name in a `try` that catches a failed import."""
+    """Return advice if `file` imports the undefined name in a `try` that catches failed imports."""
     try:
         tree = ast.parse("".join(linecache.getlines(file)))
     except (SyntaxError, ValueError):
@@ -62,7 +62,7 @@ def caught_import(error: NameError, file: str) -> str:
 
 
 def _of_caught(name: str, module: str, line: int) -> str:
-    """Return advice on a module whose import failed at this line."""
+    """Return advice on a module whose import failed on this line."""
     if sys.modules.get(module) is not None:
         return ""  # the name exists, so its import did not fail
     why = interface_advice(module) or module_advice(ModuleNotFoundError(name=module.partition(".")[0]))

@@ -1,4 +1,4 @@
-"""Replace `sys.argv` while a node's program runs."""
+"""Replace `sys.argv` while a node's program is running."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def command_line(argv: Sequence[str]) -> Iterator[None]:
-    """Set `sys.argv`; restore it on exit."""
+    """Set `sys.argv`, and restore it on exit."""
     before = sys.argv
     sys.argv = list(argv)
     try:

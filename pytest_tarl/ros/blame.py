@@ -12,14 +12,14 @@ from typing import Any
 
 _HERE = str(Path(__file__).parent)
 _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", "purelib", "platlib")})
-# folders of a system ROS, which sysconfig does not list in a virtual environment
+# folders of a ROS installed on the system, which sysconfig does not list in a virtual environment
 _SYSTEM = ("/dist-packages/", "/opt/ros/")
 
 Place = tuple[str, int, str]  # file, line, function
 
 
 def of_traceback(traceback: TracebackType | None) -> Place | None:
-    """Return the innermost place in user code at which an exception occurred."""
+    """Return the innermost place in user code where an exception occurred."""
     places = []
     while traceback is not None:
         places.append(
@@ -35,7 +35,7 @@ def of_frame(frame: FrameType | None) -> Place | None:
 
 
 def of_function(function: Any) -> Place | None:
-    """Return the place where a function is defined, or None if it has no code, as a builtin."""
+    """Return where a function is defined, or None if it has no code, like a builtin."""
     while isinstance(function, partial):
         function = function.func
     if not hasattr(function, "__code__") and not hasattr(function, "__func__"):
@@ -45,7 +45,7 @@ def of_function(function: Any) -> Place | None:
 
 
 def describe(place: Place | None) -> str:
-    """Format a place, such as `traveller.py, line 31, in travel`; relative to the working directory if below it."""
+    """Format a place, as in `traveller.py, line 31, in travel`; relative to the working directory if below it."""
     if place is None:
         return "an unknown line"
     file, line, function = place
@@ -61,7 +61,7 @@ def describe_first(places: Iterable[Place]) -> str:
 
 
 def is_library(file: str) -> bool:
-    """Return whether a file belongs to Python or an installed package rather than to the user."""
+    """Return whether a file belongs to Python or to an installed package, not to the user."""
     return file.startswith((*_LIBRARIES, "<")) or any(place in file for place in _SYSTEM)
 
 

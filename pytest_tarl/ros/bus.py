@@ -18,27 +18,27 @@ from pytest_tarl.ros.services import Reply, ServiceDirectory
 Listener = Callable[[Any], None]
 Channel = Callable[
     [Any, float], Iterable[tuple[float, Any]]
-]  # (message, time (s)) → a pair (delay (s), message) for each message that arrives
+]  # (message, time (s)) → (delay (s), message) for each message that arrives
 
 
 class Subscription(Protocol):
-    """A node's end of a topic."""
+    """A node's end of a subscribed topic."""
 
-    message_type: type | None  # None accepts any type
+    message_type: type | None  # None accepts every type
 
     @property
     def process(self) -> Program:
         """The process that subscribes."""
 
     def deliver(self, message: Any, origin: Publication | None = None) -> None:
-        """Receive a message. `origin` is None if the world sent the message. Call this outside all tasks.
+        """Receive a message; `origin` is None if the world sent it. Call this outside all tasks.
 
-        The caller keeps no reference to the message.
+        The caller must not keep a reference to the message.
         """
 
 
 class Publication(Protocol):
-    """A node's end of a topic that it publishes on."""
+    """A node's end of a published topic."""
 
     type: str
 
@@ -48,7 +48,7 @@ class Publication(Protocol):
 
 
 class Topic:
-    """One topic. `kept` holds messages for later subscribers (latched, transient local)."""
+    """A topic; `kept` has the messages for later subscribers (latched, transient local)."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -58,34 +58,34 @@ class Topic:
         self.latest: Any = None
         self.kept: dict[Any, Any] = {}
         self.channels: list[Channel] = []  # fault injectors that each message passes through
-        self.carried = False  # whether anything was ever published
+        self.carried = False  # whether anything has been published
 
 
 class Bus:
-    """The world's access to topics and services. One per episode."""
+    """The world's access to topics and services, one object per episode."""
 
     def __init__(
         self, scheduler: Scheduler, run: Callable[..., None], services: ServiceDirectory | None = None
     ) -> None:
-        self._services = services  # None with --tarl-ros=real, which has its own services
+        self._services = services  # None for --tarl-ros=real, which has its own services
         self._scheduler = scheduler
         self._run = run
         self._topics: dict[str, Topic] = {}
         self._by_spelling: dict[str, Topic] = {}
         self._observers: list[Callable[[str, Any], None]] = []
-        self.muted = False  # whether messages of the world are discarded
+        self.muted = False  # whether messages from the world are discarded
         self.published: Counter[str] = Counter()
-        # called with topic and message whenever a node publishes
+        # called with topic and message when a node publishes
         self.emitted: Callable[[str, Any], None] | None = None
         self.subscribed: set[str] = set()
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world. Every idle subscriber receives a copy before this method returns.
+        """Publish from the world; every idle subscriber receives a copy before this method returns.
 
-        A busy subscriber receives it in a later `step`. A header stamp of zero becomes the current time. `latch` keeps
+        Busy subscribers receive it in a later `step`. A header stamp of zero becomes the current time. `latch` keeps
         the message for later subscribers.
 
-        Raise NodeError if a callback raises an exception, RecordingError for a message of a wrong type.
+        Raise NodeError if a callback raises, and RecordingError if the message has the wrong type.
         """
         place = self.topic(topic)
         if self.muted:
@@ -101,18 +101,18 @@ class Bus:
             return
         if latch:
             place.kept[None] = snapshot(message)
-        # a node is publishing, so deliver the message after the task of this node has paused
+        # a node is publishing: deliver the message after its task has paused
         if running_task() is not None:
             self._scheduler.later(lambda: self._deliver(place, message, spare=True))
             return
         self._run(self._deliver, place, message, True)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message that a node published on the topic, or None before the first one."""
+        """Return the newest message published by a node on the topic, or None before the first one."""
         return self.topic(topic).latest
 
     def subscribe(self, topic: str, callback: Listener) -> None:
-        """Call the world's `callback` with every message that a node publishes on the topic.
+        """Call the world's `callback` with every message published by a node on the topic.
 
         Raise RecordingError if it is not callable.
         """
@@ -121,7 +121,7 @@ class Bus:
         self.topic(topic).listeners.append(callback)
 
     def observe(self, observer: Callable[[str, Any], None]) -> None:
-        """Call `observer` with topic and message before any subscriber gets the message."""
+        """Call `observer` with topic and message before any subscriber receives the message."""
         self._observers.append(observer)
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
@@ -129,9 +129,9 @@ class Bus:
         self._own_services("serve").serve(service, service_type, handler)
 
     def call(self, service: str, request: Any) -> Reply:
-        """Call a node's service from the world and return the reply, which is `done` once the node has answered.
+        """Call a node's service from the world; the reply is `done` once the node has answered.
 
-        A waiting node answers before this method returns, a busy node during a later `step`.
+        An idle node answers before this method returns, a busy node during a later `step`.
 
         Raise RecordingError if no node serves it.
         """
@@ -184,7 +184,7 @@ class Bus:
             self._run(lambda: None)
 
     def _emit(self, publication: Publication, place: Topic, message: Any, keep: int) -> None:
-        """Deliver a node's message to the world now, and to other nodes when the running node waits."""
+        """Deliver a node's message: to the world now, to other nodes when the running node waits."""
         place.latest = message
         if keep:
             place.kept[publication] = message
@@ -194,11 +194,11 @@ class Bus:
             self._scheduler.later(lambda: self._deliver(place, message, False, publication))
 
     def interpose(self, topic: str, channel: Channel) -> None:
-        """Add a channel for a topic, after the channels added before."""
+        """Add a channel to a topic, after its existing channels."""
         self.topic(topic).channels.append(channel)
 
     def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
-        """Pass a message through a topic's channels; call `arrive` with each result after its delay."""
+        """Pass a message through the channels of a topic; call `arrive` with each result after its delay."""
         now = self._scheduler.time
         arrivals: list[tuple[float, Any]] = [(0.0, message)]
         for channel in place.channels:
@@ -219,7 +219,7 @@ class Bus:
         try:
             listener(message)
         except BaseException as error:
-            # an error of the world must be raised in the test, not in the node that publishes
+            # an error in the world belongs to the test, not to the publishing node
             self._scheduler.failure = self._scheduler.failure or error
 
     def advertise(self, publication: Publication, place: Topic) -> None:
@@ -227,7 +227,7 @@ class Bus:
         place.publications.append(publication)
 
     def attach(self, subscription: Subscription, place: Topic, *, wants_kept: bool = True) -> None:
-        """Add a node's subscription, which receives latched messages as soon as the node waits."""
+        """Add a node's subscription; it receives latched messages as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
         self._peers_changed(place, subscription, joined=True)
@@ -252,7 +252,7 @@ class Bus:
     def hand(
         self, place: Topic, subscription: Subscription, message: Any, origin: Publication | None = None
     ) -> None:
-        """Deliver a copy of a message to one subscription when the running node waits."""
+        """Deliver a copy of a message to one subscription, when the running node waits."""
         message = snapshot(message)
         self._scheduler.later(lambda: self._hand(place, subscription, message, origin))
 
@@ -264,7 +264,7 @@ class Bus:
                 self.detach(subscription, place)
 
     def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
-        """Deliver copies to all subscriptions; with `spare`, the last gets the original."""
+        """Deliver copies to all subscriptions; with `spare`, the last one gets the original."""
         for observer in self._observers:
             observer(place.name, message)
         last = place.subscriptions[-1] if spare and place.subscriptions else None
@@ -290,6 +290,6 @@ class Bus:
 
 
 def _compatible(publication: Publication, subscription: Subscription) -> bool:
-    """Return whether two ends of a topic connect. In ROS 2, QoS profiles decide; in ROS 1, they always connect."""
+    """Return whether publication and subscription connect: always in ROS 1, by their QoS in ROS 2."""
     offered, wanted = getattr(publication, "qos_profile", None), getattr(subscription, "qos_profile", None)
     return offered is None or wanted is None or bool(offered.satisfies(wanted))

@@ -1,4 +1,4 @@
-"""Parse values on a ROS command line (the scalar and flow subset of YAML)."""
+"""Parse values on a ROS command line (scalars and flow collections of YAML)."""
 
 from __future__ import annotations
 

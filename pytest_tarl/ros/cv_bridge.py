@@ -1,4 +1,4 @@
-"""cv_bridge implemented with numpy: convert images to arrays and back, between common encodings."""
+"""cv_bridge with numpy: convert images to arrays and back, between common encodings."""
 
 from __future__ import annotations
 
@@ -58,8 +58,7 @@ class CvBridge:
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
         """Return an array of shape (height, width[, channels]) as an image message.
 
-        Raise TypeError if the image is not an array, CvBridgeError if the type of the array does not fit the
-        encoding.
+        Raise TypeError if the image is not an array, and CvBridgeError if its type does not fit the encoding.
         """
         if not hasattr(cvim, "dtype"):
             raise TypeError("Your input type is not a numpy array")
@@ -128,7 +127,7 @@ def _depth_of(dtype: Any) -> str:
 
 
 def converted(image: Any, origin: str, wanted: str) -> Any:
-    """Convert channels and depth between named encodings. Raise CvBridgeError if that is impossible."""
+    """Convert channels and depth between named encodings. Raise CvBridgeError if there is no conversion."""
     import numpy as np
 
     if origin == wanted:

@@ -21,7 +21,7 @@ _OF_KIND: Mapping[Kind, Mapping[str, str]] = {
 
 @contextmanager
 def variables_restored() -> Iterator[None]:
-    """On exit, undo all calls of `set_variables` within the context."""
+    """Undo all calls of `set_variables` on exit."""
     names = {name for variables in _OF_KIND.values() for name in variables}
     before = {name: os.environ.get(name) for name in sorted(names)}
     try:
@@ -35,6 +35,6 @@ def variables_restored() -> Iterator[None]:
 
 
 def set_variables(kind: Kind) -> None:
-    """Set those variables of a ROS generation that are not set yet."""
+    """Set the variables of a ROS generation that are not set yet."""
     for name, value in _OF_KIND[kind].items():
         os.environ.setdefault(name, value)

@@ -1,4 +1,4 @@
-"""One episode of the in-process ROS, as the test uses it."""
+"""One episode of the in-process ROS, as tests use it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Ros(Network):
             require_remapping(old, new)
         super().__init__(self._run, parameters or {}, remappings or {}, watchdog_limit)
         self.uninstalled = UninstalledFinder()
-        self._launched = NOTHING  # launch-file parameters for the node that is started next
+        self._launched = NOTHING  # launch-file parameters for the next node
         self._launch_notes: list[str] = []
         self.closed = False
 
@@ -61,26 +61,26 @@ class Ros(Network):
 
     @property
     def silent(self) -> bool:
-        """Whether nodes have neither published a message nor called a service so far."""
+        """Whether no node has published a message or called a service yet."""
         return not self.published and not self.services.requests
 
     @property
     def subscribed(self) -> set[str]:
-        """Topics that nodes have subscribed to so far."""
+        """Topics that nodes have subscribed to."""
         return self.bus.subscribed
 
     @property
     def shutdown_errors(self) -> tuple[NodeError, ...]:
-        """Errors that nodes raised during shutdown. The episode is over by then, so they do not fail it."""
+        """Errors that nodes raised while shutting down; they do not fail the episode, which is already over."""
         return tuple(error for process in self.processes for error in process.errors)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences for the user on how the nodes were started."""
+        """Sentences for the user about how the nodes were started."""
         return (*self._launch_notes, *self.uninstalled.notes(), *self._silent_terminals())
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminal of all nodes, or of those called `node`, which may be the path of a script.
+        """Type text on the terminals of all nodes, or of those named `node`, which may be a script's path.
 
         Raise SettingsError if there is none.
         """
@@ -96,7 +96,7 @@ class Ros(Network):
             process.part(Terminal).type(text)
 
     def _silent_terminals(self) -> list[str]:
-        """Return a sentence for each node that waited for keys although the test typed none."""
+        """Return a sentence for each node that waited for keys when the test typed none."""
         terminals = [(one.label, one.part(Terminal)) for one in self.processes]
         return [
             f"Node {label!r} waits for the keyboard, but the test types nothing: call tarl.type(text)."
@@ -105,30 +105,30 @@ class Ros(Network):
         ]
 
     def give(self, parameters: Mapping[str, Any]) -> None:
-        """Add parameters for every node that is started from now on."""
+        """Add parameters for every node that starts from now on."""
         self.parameters.update(parameters)
         if "parameter_server" in self.__dict__:
             self.parameter_server.take(parameters)
 
     def launch(self, given: Given) -> None:
-        """Set launch-file parameters for the node that is started next; the test's own parameters take precedence."""
+        """Set launch-file parameters for the next node; the test's own parameters take precedence."""
         self._launched = given
         if given.note:
             self._launch_notes.append(given.note)
 
     def note(self, sentence: str) -> None:
-        """Add a note for the user on how the nodes were started."""
+        """Add a sentence for the user about how the nodes were started."""
         self._launch_notes.append(sentence)
 
     def use_definitions_around(self, folder: Path, test: Path) -> None:
         """Load the message, service and action definitions of the workspace that contains `folder`.
 
-        Without a workspace, load those in the folder of the test or beside it.
+        Without a workspace, load those in the test's folder or beside it.
         """
         node_workspaces.search(folder, test)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
-        """Run a node's main program until it first waits. Raise NodeError if the program raises an exception."""
+        """Run a node's main program until it first waits. Raise NodeError if it raises."""
         process = Process(self, name, (name, *argv))
         process.launched, self._launched = self._launched, NOTHING
         for key, value in process.launched.shared.items():
@@ -145,7 +145,7 @@ class Ros(Network):
             self._run(self.scheduler.spawn, process, function, *arguments)
 
     def interrupt(self, name: str, at: float, outage: float) -> None:
-        """Kill the node `name` at the time `at` (s), and start it again `outage` seconds later."""
+        """Kill the node `name` at time `at` (s), and restart it `outage` seconds later."""
 
         def kill() -> None:
             running = next((one for one in self.processes if one.name == name and not one.ended), None)
@@ -164,14 +164,14 @@ class Ros(Network):
         self.scheduler.at(nanoseconds(at), kill)
 
     def step(self, dt: float) -> None:
-        """Advance virtual time by `dt` seconds; run all tasks that fall due, until every node waits again.
+        """Advance virtual time by `dt` seconds; run all tasks that become due, until every node waits again.
 
-        Raise NodeError if a node raises an exception or never waits.
+        Raise NodeError if a node raises or never waits.
         """
         self._run(self.scheduler.advance, self.scheduler.time + nanoseconds(dt))
 
     def on_delivery(self, listener: Callable[[str, Any], None]) -> None:
-        """Call `listener(topic, message)` for every message before any subscriber gets it."""
+        """Call `listener(topic, message)` for every message before any subscriber receives it."""
         self.bus.observe(listener)
 
     def installed(self) -> AbstractContextManager[None]:
@@ -179,7 +179,7 @@ class Ros(Network):
         return standins_installed(self.scheduler, self.uninstalled, self.processes)
 
     def close(self) -> None:
-        """End every node as ROS does, then discard all state. Raise NodeError for a node that refuses to end."""
+        """End every node as ROS does, then discard all state. Raise NodeError for a node that does not end."""
         if self.closed:
             return
         self.closed = True
@@ -211,7 +211,7 @@ class Ros(Network):
                 spun = WATCHDOG.disarm()
         except Spinning:
             spun = True
-            # disarming has an effect only if the exception interrupted the first call
+            # needed only if the exception interrupted the first call
             WATCHDOG.disarm()
         if spun and scheduler.failure is None:
             scheduler.failure = scheduler.spinning()
@@ -221,5 +221,5 @@ class Ros(Network):
 
 
 def _program(node: str) -> str:
-    """Return the name under which `tarl.start` starts a script, given its path; a name of a ROS node is unchanged."""
+    """Return the name that `tarl.start` gives to a script, from its path; names of ROS nodes stay unchanged."""
     return node if node.startswith("/") else Path(node).stem

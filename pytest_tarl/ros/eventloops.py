@@ -1,4 +1,4 @@
-"""Run event loops of nodes, such as asyncio's, on the virtual clock: their selectors wait in virtual time."""
+"""Run nodes' event loops (such as asyncio's) on the virtual clock: their selectors wait in virtual time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _KINDS: Final[tuple[type[Any], ...]] = tuple(
 
 @contextmanager
 def virtual_event_loops(scheduler: Scheduler) -> Iterator[None]:
-    """Make the selectors of nodes wait in virtual time; those of other code wait in real time."""
+    """Make selectors of nodes wait in virtual time; other code waits in real time."""
     saved = [(kind, kind.select) for kind in _KINDS]
     for kind, real in saved:
         kind.select = _select(real, scheduler)
@@ -34,7 +34,7 @@ def virtual_event_loops(scheduler: Scheduler) -> Iterator[None]:
 
 
 def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any]:
-    interrupted: set[int] = set()  # IDs of the selectors whose event loops were told that the episode ends
+    interrupted: set[int] = set()  # ids of selectors whose event loops know that the episode ends
 
     def select(selector: Any, timeout: float | None = None) -> Any:
         task = running_task()

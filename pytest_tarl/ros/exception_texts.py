@@ -13,7 +13,7 @@ _PACKAGE = str(Path(__file__).parent.parent)
 
 
 def account(error: BaseException, test: Path) -> str:
-    """Return the text to show for an error in a test: its message, and the node's traceback if a node failed."""
+    """Return the text for an error in a test: its message and, if a node failed, the node's traceback."""
     cause = error.__cause__
     if not isinstance(error, NodeError) or cause is None or cause.__traceback__ is None:
         return text_of(error)
@@ -23,7 +23,7 @@ def account(error: BaseException, test: Path) -> str:
 
 
 def of_node(frames: TracebackType) -> TracebackType:
-    """Return a traceback without the scheduler's frames at its beginning."""
+    """Return a traceback without the scheduler's frames at the start."""
     here: TracebackType | None = frames
     while here is not None and here.tb_frame.f_code.co_filename.startswith(_PACKAGE):
         here = here.tb_next

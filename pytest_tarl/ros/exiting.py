@@ -1,4 +1,4 @@
-"""Make `os._exit` of a node end only this node.
+"""Make a node's `os._exit` end only this node.
 
 A forked child of a node is a copy of pytest. It may compute and end as a program does, but if it came back to the
 scheduler, it would run the rest of the tests a second time. It is therefore ended at the first call that waits.
@@ -23,7 +23,7 @@ child was ended. Let it only compute and end, or start it as a program of its ow
 
 
 class ProcessExit(SystemExit):
-    """Raised to end the whole process of a node, from any of its threads."""
+    """End a node's whole process, from any of its threads."""
 
 
 @contextmanager

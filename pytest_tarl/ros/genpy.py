@@ -1,4 +1,4 @@
-"""The parts of genpy that nodes import: times, the message base class and its errors."""
+"""The parts of genpy that nodes import: times, the base class of messages, and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`genpy.dynamic`: build message classes from the full definition text in a bag or topic header."""
+"""`genpy.dynamic`: build message classes from the full definition in a bag or topic header."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ __all__ = ["generate_dynamic"]
 
 
 def generate_dynamic(core_type: str, msg_cat: str) -> dict[str, Any]:
-    """Return the class of a message type and of every type in its full definition, by name."""
+    """Return the classes of a message type and of all types in its full definition, by name."""
     first, *others = re.split(r"^={3,}\s*$", msg_cat, flags=re.MULTILINE)
     texts = {core_type: first}
     for other in others:
         header, _, text = other.strip().partition("\n")
         texts[header.removeprefix("MSG:").strip()] = text
     made: dict[str, Any] = {}
-    # in reverse order, because the text states each type before the types of its fields
+    # reversed, because the text has each type before the types of its fields
     for name in reversed(texts):
         package, _, short = name.partition("/")
         known = ros1.message_class(package, short)

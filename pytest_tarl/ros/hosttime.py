@@ -1,4 +1,4 @@
-"""Show nodes the virtual clock in Python's `time` module; other code keeps the real one."""
+"""Show the virtual clock in Python's `time` module to nodes; other code keeps the real one."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CLOCKS: tuple[tuple[Any, str], ...] = (
     (time, "perf_counter_ns"),
     (time, "sleep"),
     (select, "select"),
-    (threading, "_time"),  # threading and queue refer to time.monotonic by these names
+    (threading, "_time"),  # threading and queue know time.monotonic by these names
     (queue, "time"),
 )
 
@@ -35,7 +35,7 @@ _POLL = nanoseconds(0.01)  # polling period of `select` (ns)
 
 @contextmanager
 def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
-    """Replace `time.sleep` and the clocks of the `time` module while nodes run."""
+    """Replace `time.sleep` and the clocks of `time` while nodes run."""
     saved = [(owner, name, getattr(owner, name)) for owner, name in _CLOCKS]
     for owner, name, real in saved:
         virtual = (lambda: scheduler.time) if name.endswith("_ns") else (lambda: seconds(scheduler.time))
@@ -52,7 +52,7 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
 
 
 def _clock(real: Callable[[], Any], virtual: Callable[[], Any], *, question: bool) -> Callable[[], Any]:
-    """Return a clock for nodes. A read counts as polling, except when the standard library reads it to wait."""
+    """Return a clock for nodes. Reading it counts as polling, unless the standard library reads it in order to wait."""
 
     def read() -> Any:
         if running_task() is None:

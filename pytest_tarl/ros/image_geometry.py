@@ -1,4 +1,4 @@
-"""`image_geometry`: project 3-D points to pixels by the CameraInfo of one camera or a stereo pair.
+"""`image_geometry`: project 3-D points to pixels, with the CameraInfo of one camera or a stereo pair.
 
 Pinhole model: u = (P00 x + P02 z + P03) / z, with the matrices of sensor_msgs/CameraInfo, adjusted for binning and
 region of interest. Methods have two names: those of ROS 1 (`fromCameraInfo`), which return a `numpy.matrix`, and those
@@ -43,7 +43,7 @@ class PinholeCameraModel:
         self.resolution: tuple[int, int] | None = None
 
     def fromCameraInfo(self, msg: Any) -> None:
-        """Take the parameters of a sensor_msgs/CameraInfo of either ROS generation."""
+        """Read the parameters from a sensor_msgs/CameraInfo of either ROS generation."""
         k, d, r, p = (getattr(msg, name if hasattr(msg, name) else name.lower()) for name in "KDRP")
         self.K, self.full_K = _matrix(k, 3, 3), _matrix(k, 3, 3)
         self.P, self.full_P = _matrix(p, 3, 4), _matrix(p, 3, 4)
@@ -53,7 +53,7 @@ class PinholeCameraModel:
         self.resolution = (msg.width, msg.height)
         self.binning_x, self.binning_y = max(1, msg.binning_x), max(1, msg.binning_y)
         roi = self.raw_roi = copy.copy(msg.roi)
-        # a region of zeros stands for the whole image
+        # a region of zeros means the whole image
         if not any((roi.x_offset, roi.y_offset, roi.width, roi.height)):
             roi.width, roi.height = msg.width, msg.height
         self.tf_frame, self.stamp = msg.header.frame_id, msg.header.stamp
@@ -154,11 +154,11 @@ class PinholeCameraModel:
         return float(self.P[1, 1])
 
     def Tx(self) -> float:
-        """Return the first element of P's last column."""
+        """Return the first element of the last column of P."""
         return float(self.P[0, 3])
 
     def Ty(self) -> float:
-        """Return the second element of P's last column."""
+        """Return the second element of the last column of P."""
         return float(self.P[1, 3])
 
     def fovX(self) -> float:
@@ -223,7 +223,7 @@ class StereoCameraModel:
         self.Q: Any = None
 
     def fromCameraInfo(self, left_msg: Any, right_msg: Any) -> None:
-        """Take the parameters of both cameras."""
+        """Read the parameters of both cameras."""
         self.left.fromCameraInfo(left_msg)
         self.right.fromCameraInfo(right_msg)
         right = self.right
@@ -235,7 +235,7 @@ class StereoCameraModel:
         return self.left.project3dToPixel(point), self.right.project3dToPixel(point)
 
     def projectPixelTo3d(self, left_uv: Point, disparity: float) -> tuple[float, float, float]:
-        """Return the point at a pixel of the left image that has that disparity in pixels."""
+        """Return the point at a pixel of the left image with this disparity in pixels."""
         x, y, z, w = (self.Q @ _matrix([left_uv[0], left_uv[1], disparity, 1.0], 4, 1)).A1.tolist()
         return (x / w, y / w, z / w) if w else (0.0, 0.0, 0.0)
 
@@ -273,12 +273,12 @@ def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", PendingDeprecationWarning
-        )  # numpy.matrix warns that it is outdated, but image_geometry returns this type
+        )  # image_geometry returns numpy.matrix, although numpy warns that it is outdated
         return np.matrix(np.array(list(numbers), dtype="float64").reshape(rows, columns))
 
 
 def _array(matrix: Any) -> Any:
-    """Return a view of a matrix as an array, or None for None."""
+    """Return a matrix as an array view, and None as None."""
     return None if matrix is None else matrix.A
 
 

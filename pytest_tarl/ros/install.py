@@ -1,4 +1,4 @@
-"""Make the stand-ins importable for nodes, and undo it after the episode."""
+"""Make the stand-ins importable for nodes, and undo this after the episode."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _IMPORT_DATA = ("__name__", "__spec__", "__loader__", "__file__", "__cached__", 
 
 
 class StandinFinder:
-    """A finder for `sys.meta_path`. Every episode gets its own module objects."""
+    """A finder for `sys.meta_path`; each episode gets its own module objects."""
 
     def __init__(self) -> None:
         self.loaded: list[str] = []
@@ -56,7 +56,7 @@ class StandinFinder:
         """Find a stand-in; return None to leave the name to other finders."""
         root = name.partition(".")[0]
         if root == "genpy" and _has_genpy():
-            # message classes may be installed with genpy; these need the real genpy
+            # installed message classes of genpy need the real genpy
             return None
         if name in STANDINS and root not in STANDALONE:
             return self._spec(name)
@@ -71,7 +71,7 @@ class StandinFinder:
         return self._installed_by_workspace(name) if name == root else None
 
     def _holds_messages(self, name: str) -> bool:
-        """Return whether a module is a message package, or the message part of a node package."""
+        """Return whether a module is a message package, or the message part of a node's package."""
         root, _, part = name.partition(".")
         kind = self._kind_of_importer()
         if installed_kind(root) == kind or not is_package(kind, root):
@@ -81,7 +81,7 @@ class StandinFinder:
         return not _is_ordinary_package(root) and sibling(root) is None
 
     def _installed_by_workspace(self, root: str) -> ModuleSpec | None:
-        """Find a workspace package's module, unless the search path has one of that name."""
+        """Find a module of a workspace package, unless the search path has one of the same name."""
         if not packages() or _is_ordinary_package(root):
             return None
         return sibling(root) or (self._spec(root) if has_configurations(root) else None)
@@ -95,7 +95,7 @@ class StandinFinder:
             inner = {key for key, value in contents.items() if isinstance(value, ModuleType)}
             hidden = {
                 key for key in inner if f"{name}.{key}" in STANDINS
-            }  # names of submodules that have a stand-in of their own
+            }  # names of submodules with their own stand-in
             module.__dict__.update((key, value) for key, value in contents.items() if key not in hidden)
             module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):
@@ -115,7 +115,7 @@ class StandinFinder:
         """Do nothing: the module is complete."""
 
     def _talking_spec(self, name: str) -> ModuleSpec:
-        """Find a message part (`msg`, `srv`, `action`) of a package. Raise UnsupportedModuleError if there is none."""
+        """Return the module of a package's `msg`, `srv` or `action`. Raise UnsupportedModuleError if there is none."""
         root, _, part = name.partition(".")
         kind = self._kind or "ros1"
         if part.partition(".")[0] in PARTS and is_package(kind, root):
@@ -133,17 +133,17 @@ class StandinFinder:
         return ModuleSpec(name, self, origin="pytest_tarl.ros", is_package=True)  # type: ignore[arg-type]
 
     def _kind_of_importer(self) -> Kind:
-        """Return the ROS generation of the importer, by the client library that its code names."""
+        """Return the importer's ROS generation, from the client library that its code names."""
         asked = asked_kind()
         if asked is not None:
-            # this look-up is for a single class, so it says nothing about the nodes of the episode
+            # this look-up is for a single class and says nothing about the episode's nodes
             return asked
         if self._kind is None:
             return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind
 
     def _settle_kind(self, kind: Kind) -> Kind:
-        """Set the ROS generation of this episode's messages; hide installed messages of the other generation."""
+        """Set the ROS generation of this episode's messages; hide installed messages of the other one."""
         self._kind = kind
         set_variables(kind)
         if installed_kind("std_msgs") not in (None, kind):
@@ -168,7 +168,7 @@ def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -
 
 @cache
 def _contents(home: str) -> Mapping[str, object]:
-    """Return the namespace of a stand-in; each episode's module gets a copy."""
+    """Return the namespace of a stand-in; the module of each episode gets a copy."""
     return {key: value for key, value in vars(import_module(home)).items() if key not in _IMPORT_DATA}
 
 
@@ -204,7 +204,7 @@ def _kind_named_by(frame: FrameType | None) -> Kind | None:
 
 
 def kind_of_caller() -> Kind:
-    """Return the ROS generation of the calling code, by the client library that its code names."""
+    """Return the caller's ROS generation, from the client library that its code names."""
     return _kind_named_by(sys._getframe(1)) or "ros1"
 
 
@@ -216,7 +216,7 @@ def _imports(code: CodeType) -> set[str]:
 def standins_installed(
     scheduler: Scheduler, uninstalled: UninstalledFinder, processes: Sequence[Process]
 ) -> Iterator[None]:
-    """Install stand-ins, virtual clock and terminals; undo all on exit."""
+    """Install stand-ins, virtual clock and terminals; undo everything on exit."""
     finder = StandinFinder()
     finder.hidden = _hide(root for root in TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
@@ -242,14 +242,14 @@ def standins_installed(
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
             del sys.modules[
                 name
-            ]  # this module refers to a stand-in of this episode, so the next episode must import it again
+            ]  # refers to a stand-in of this episode, so the next episode must import it again
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)
 
 
 def _hide(roots: Iterable[str]) -> dict[str, ModuleType]:
-    """Remove modules of a real ROS or another stand-in from `sys.modules`, and return them."""
+    """Remove modules of a real ROS or of another stand-in from `sys.modules`, and return them."""
     present = {root for root in roots if root in sys.modules}
     names = [name for name in sys.modules if name.partition(".")[0] in present and not _is_given(name)]
     return {name: sys.modules.pop(name) for name in names}
@@ -258,7 +258,7 @@ def _hide(roots: Iterable[str]) -> dict[str, ModuleType]:
 def _is_given(name: str) -> bool:
     """Return whether the test put this module, or a package that contains it, into `sys.modules`.
 
-    The stand-in of a whole package, such as rospy, takes precedence over the test's module.
+    A stand-in for a whole package, such as rospy, takes precedence over the test's module.
     """
     root = name.partition(".")[0]
     of_a_test = root in sys.modules and getattr(sys.modules[root], "__spec__", None) is None

@@ -1,4 +1,4 @@
-"""Keep what a node may change in the interpreter, and what pytest needs after the episode."""
+"""Protect the parts of the interpreter that a node may change and pytest still needs."""
 
 from __future__ import annotations
 

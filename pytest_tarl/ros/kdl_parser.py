@@ -31,7 +31,7 @@ def treeFromParam(param: str) -> tuple[bool, Tree]:  # noqa: N802
 
 
 def treeFromUrdfModel(robot_model: Any, quiet: bool = False) -> tuple[bool, Tree]:  # noqa: N802, ARG001
-    """Return True and the tree of a description; its segments have the names of the links."""
+    """Return True and the tree of a description; segments are named after links."""
     root = robot_model.get_root()
     tree = Tree(root)
     below = [root]
@@ -52,7 +52,7 @@ def _pose(origin: Any) -> Frame:
 
 
 def _joint(joint: Any, pose: Frame) -> Joint:
-    """Return a joint with its axis and origin in the frame of the parent link."""
+    """Return a joint whose axis and origin are in the parent link's frame."""
     axis = pose.M * Vector(*(joint.axis or (1, 0, 0)))
     if joint.joint_type in _TURNING:
         return Joint(joint.name, pose.p, axis, Joint.RotAxis)

@@ -1,4 +1,4 @@
-"""Standard input of nodes: a terminal on which the test types; reading waits in virtual time."""
+"""Standard input of nodes: a terminal on which the test types, with reads that wait in virtual time."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from pytest_tarl.ros.scheduler import Task, current_task
 
 _DEBUGGERS = frozenset(
     {"bdb", "cmd", "code", "pdb"}
-)  # debuggers, which read from the user's terminal even while a node runs
-_LOCAL_MODES = 3  # index of the local modes in the list that termios.tcgetattr returns
+)  # debuggers, which read from the user's terminal even while a node is running
+_LOCAL_MODES = 3  # index of the local modes in termios.tcgetattr's result
 
 
 class NodeInterruptedError(KeyboardInterrupt):
-    """Ends a read when the episode ends, as Ctrl-C does on a robot."""
+    """Ends a read at the end of the episode, as Ctrl-C does on a robot."""
 
-    tarl_shutdown = True  # this exception is a normal end of a node, so it is not reported
+    tarl_shutdown = True  # a normal end of a node, which is not reported
 
 
 class Terminal(io.TextIOBase):
     """The standard input of one node.
 
-    As in a real terminal, the node can read only whole lines until it switches to raw or cbreak mode.
+    As on a real terminal, a node can read only whole lines until it switches to raw or cbreak mode.
     """
 
     encoding = "utf-8"
@@ -40,7 +40,7 @@ class Terminal(io.TextIOBase):
         self._typed = ""
         self._descriptors: tuple[int, ...] = ()
         self._waiting: list[Task] = []
-        self.waited = False  # whether the node has waited for text
+        self.waited = False  # whether the node has waited for input
         self.used = False  # whether the test has typed
 
     def type(self, text: str) -> None:
@@ -51,31 +51,31 @@ class Terminal(io.TextIOBase):
             self._process.scheduler.wake(task)
 
     def look(self) -> bool:
-        """Return whether a read would return at once."""
+        """Return whether a read would return immediately."""
         self.waited = True
         return bool(self._readable())
 
     def read(self, size: int | None = -1, /) -> str:
-        """Return up to `size` characters; without a size, all text until the node ends."""
+        """Return up to `size` characters; without a size, return all text until the node ends."""
         if size is None or size < 0:
             lines = list(iter(self.readline, ""))
             return "".join(lines)
         if size == 0:
-            return ""  # return without waiting, as a file does
+            return ""  # do not wait, like a file
         self._wait()
         return self._take(min(size, self._readable()))
 
     def readline(self, size: int | None = -1, /) -> str:  # type: ignore[override]
-        """Return a line of at most `size` characters; raise NodeInterruptedError when the node ends."""
+        """Return a line of at most `size` characters. Raise NodeInterruptedError when the node ends."""
         limit = sys.maxsize if size is None or size < 0 else size
         while "\n" not in self._typed[:limit] and len(self._typed) < limit:
             self._pause()
         return self._take(min(self._typed.find("\n") + 1 or limit, limit))
 
     def key(self, patience: int | None) -> str:
-        """Return the next typed character, or an empty string if none is typed within `patience` (ns; None: no limit).
+        """Return the next typed character; empty if none is typed within `patience` (ns; None: no limit).
 
-        At the end of the episode return an empty string at once.
+        At the end of the episode, return an empty string at once.
         """
         scheduler = self._process.scheduler
         until = None if patience is None else scheduler.time + patience
@@ -87,7 +87,7 @@ class Terminal(io.TextIOBase):
         return self._take(1)
 
     def fileno(self) -> int:
-        """Return a descriptor that termios can query and configure. Raise OSError if the system has no terminals."""
+        """Return a descriptor that termios can configure. Raise OSError if the system has no terminals."""
         if not self._descriptors:
             if not hasattr(os, "openpty"):
                 raise io.UnsupportedOperation("This operating system has no pseudo-terminals.")
@@ -118,7 +118,7 @@ class Terminal(io.TextIOBase):
         self._descriptors = ()
 
     def _readable(self) -> int:
-        """Return the number of characters that can be read now."""
+        """Return the number of characters available now."""
         return self._typed.rfind("\n") + 1 if self._collects_lines() else len(self._typed)
 
     def _collects_lines(self) -> bool:
@@ -139,7 +139,7 @@ class Terminal(io.TextIOBase):
         self._park(None)
 
     def _park(self, until: int | None) -> None:
-        """Suspend the task until the test types, at most until the instant `until`."""
+        """Suspend the task until the test types something, or until the time `until`."""
         task = current_task()
         self._waiting.append(task)
         try:
@@ -173,7 +173,7 @@ class Bytes:
 
 
 class _StandardInput:
-    """`sys.stdin` while nodes run: each node gets its own terminal, other code the real stream."""
+    """`sys.stdin` while nodes run: each node has its own terminal, other code the real stream."""
 
     def __init__(self, real: Any) -> None:
         self.real = real
@@ -204,8 +204,7 @@ def own_terminal() -> Terminal | None:
 def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None]:
     """Split the streams of a `select`.
 
-    Return three items: the streams that are the node's terminal, all other streams, and the terminal (None if no stream
-    is the terminal).
+    Return the streams that are the node's terminal, all other streams, and the terminal (None if no stream is it).
     """
     terminal = own_terminal()
     own = [one for one in streams if terminal is not None and terminal.owns(one)]
@@ -214,10 +213,9 @@ def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None
 
 @contextmanager
 def terminals(processes: Sequence[Process]) -> Iterator[None]:
-    """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end.
+    """Give nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end.
 
-    If the test itself has replaced `input` or `sys.stdin`, its replacement stays; `input` then reads from the test's
-    stream.
+    If the test has replaced `input` or `sys.stdin`, its replacement stays, and `input` reads from the test's stream.
     """
     mine = _StandardInput(sys.stdin)
     replaced: list[tuple[Any, str, Any, Any]] = [(os, "read", os.read, _read(os.read))]
@@ -239,7 +237,7 @@ def terminals(processes: Sequence[Process]) -> Iterator[None]:
 
 
 def _from_test(stream: Any) -> bool:
-    """Return whether the test has replaced `sys.stdin` by its own stream, such as a StringIO."""
+    """Return whether the test has replaced `sys.stdin` by a stream such as StringIO."""
     of_pytest = type(stream).__module__.startswith("_pytest.")
     return not (stream is None or of_pytest or isinstance(stream, io.TextIOWrapper | _StandardInput))
 

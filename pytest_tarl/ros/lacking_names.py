@@ -1,7 +1,7 @@
-"""Public names that modules of ROS have and their stand-ins lack, to tell such names from misspelled ones in errors.
+"""Public names of ROS modules that the stand-ins lack, so that errors can tell them from misspelled names.
 
-Every module whose source was compared is listed: rospy 1.15, rclpy 9.1, tf 1.13, tf2 0.7, actionlib 1.14, and for all
-other packages the versions in Debian 12. Names that a module only imports from the standard library are left out.
+The list covers every module whose source was compared: rospy 1.15, rclpy 9.1, tf 1.13, tf2 0.7, actionlib 1.14, and all
+other packages in the version of Debian 12. Names that a module merely imports from the standard library are left out.
 """
 
 from __future__ import annotations

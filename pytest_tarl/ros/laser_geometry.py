@@ -1,4 +1,4 @@
-"""laser_geometry's Python API for ROS 1 and ROS 2: a scan as a point cloud in the frame of the laser."""
+"""laser_geometry's Python API for ROS 1 and ROS 2: convert a scan to a point cloud in the laser's frame."""
 
 # ruff: noqa: N802 (names are those of laser_geometry)
 
@@ -20,7 +20,7 @@ class LaserProjection:
     LASER_SCAN_MAX_RANGE: Final = -3.0
 
     class ChannelOption:
-        """Fields of the cloud in addition to x, y and z; combine them with `|`."""
+        """Fields of the cloud besides x, y and z; combine them with `|`."""
 
         NONE: Final = 0x00
         INTENSITY: Final = 0x01
@@ -33,7 +33,7 @@ class LaserProjection:
     def projectLaser(
         self, scan_in: Any, range_cutoff: float = -1.0, channel_options: int = ChannelOption.DEFAULT
     ) -> Any:
-        """Return the cloud of a scan. A `range_cutoff` (m) of 0 or more is an additional upper limit of the range."""
+        """Return the cloud of a scan. A `range_cutoff` (m) of at least 0 further limits the range."""
         import numpy as np
 
         from pytest_tarl.ros.point_cloud2 import create_cloud

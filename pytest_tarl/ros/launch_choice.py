@@ -1,4 +1,4 @@
-"""Choose the settings that a script gets if several launch files start it."""
+"""Choose the settings for a script that several launch files start."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from typing import Any
 
 from pytest_tarl.ros.launch_sources import NOTHING, Given
 
-# the settings that a launch file gives to a node, and the path of the file
+# what a launch file gives to a node, and the file's path
 Start = tuple[Given, Path]
 
 
 def chosen(script: Path, package: Path | None, starts: Sequence[Start]) -> Given:
     """Return what the script gets; `package` is the folder of its package.
 
-    If the launch files differ, only those of the package count. If these differ, too, the one named after the script
-    counts. If there is no such file, return what is equal in all of them.
+    If the launch files differ, only those of the package count. If these differ as well, the one named after the script
+    counts. If there is none, return what all of them have in common.
     """
     giving = [one for one in starts if one[0].gives]
     near = [one for one in giving if package is not None and one[1].is_relative_to(package)]
@@ -34,13 +34,13 @@ def chosen(script: Path, package: Path | None, starts: Sequence[Start]) -> Given
 
 
 def is_named_after(launch: Path, script: Path) -> bool:
-    """Return whether the name of a launch file contains the name of a script as whole words."""
+    """Return whether a launch file's name contains a script's name as whole words."""
     words = re.escape(script.stem.removesuffix("_node"))
     return re.search(rf"(?:^|[_-]){words}(?:[_-]|\.|$)", launch.name) is not None
 
 
 def _common(script: Path, differing: Sequence[Start]) -> Given:
-    """Return what is equal in all launch files, with a note that lists them."""
+    """Return what all launch files have in common, with a note that lists them."""
     names = sorted({file.name for _, file in differing})
     shown = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
     first = differing[0][0]
@@ -65,7 +65,7 @@ def _valueless(starts: Sequence[Start]) -> tuple[str, ...]:
 
 
 def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the entries that are equal in all mappings; compare nested mappings entry by entry."""
+    """Return the entries that are the same in all mappings, comparing nested mappings entry by entry."""
     first, *others = mappings
     agreed: dict[str, Any] = {}
     for name, value in first.items():
@@ -80,7 +80,7 @@ def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _equal(one: Any, other: Any) -> bool:
-    """Return whether two YAML values are identical; unlike in Python, 1, 1.0 and True differ."""
+    """Return whether two YAML values are identical; 1, 1.0 and True differ, unlike in Python."""
     return repr(one) == repr(other)
 
 

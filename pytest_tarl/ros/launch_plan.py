@@ -1,4 +1,4 @@
-"""The contents of a launch file: Python nodes with names, command lines and parameters, and other nodes."""
+"""Read a launch file: Python nodes with names, command lines and parameters, and other nodes."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.name_resolution import joined, remapped
 from tarl_lint.workspace.node_programs import Program, program
 
-SHOWN = 3  # maximum number of a launch file's problems in one note
+SHOWN = 3  # maximum number of problems in one note on a launch file
 _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
 
 
 @dataclass(frozen=True)
 class Launched:
-    """A node of a launch file. `path` is its Python program; if it has none, `foreign` says why.
+    """A node of a launch file. `path` is its Python program; if it is not Python, `foreign` says why.
 
-    `problem` says why the node cannot be started; it is empty if the node can be started.
+    `problem` says why the node cannot be started; it is empty if it can be.
     """
 
     launch: Launch
@@ -50,12 +50,12 @@ class Launched:
 
     @cached_property
     def given(self) -> Given:
-        """Return the parameters. Raise SettingsError for YAML that cannot be read."""
+        """Return the parameters. Raise SettingsError if the YAML cannot be read."""
         return replace(parameters(self.launch, self.node, self.name), node=self.name)
 
     @property
     def spellings(self) -> frozenset[str]:
-        """Return the names by which a test may name the node."""
+        """Return the names by which a test may refer to the node."""
         node = self.node
         return frozenset(
             {self.name, self.name.strip("/"), self.name.rpartition("/")[2], node.executable,
@@ -63,23 +63,23 @@ class Launched:
         )  # fmt: skip
 
     def resolve(self, name: str) -> str:
-        """Return the full name of a topic, service or parameter after the launch file's namespace and remappings."""
+        """Return a topic, service or parameter name, after the launch file's namespace and remappings."""
         return remapped(name, self.node.namespace, self.name.rpartition("/")[2], self.node.remaps)
 
 
 @dataclass(frozen=True)
 class LaunchPlan:
-    """The nodes of a launch file in starting order, and notes for the user."""
+    """The nodes of a launch file in starting order, with notes for the user."""
 
     file: Path
     nodes: tuple[Launched, ...]
     notes: tuple[str, ...] = ()
 
     def chosen(self, only: Collection[str] | None, replaced: Collection[str]) -> tuple[Launched, ...]:
-        """Return the nodes to start or to replace; nodes in `replaced` are included even if they are not in `only`.
+        """Return the nodes to start or replace; nodes in `replaced` need not be in `only`.
 
         Raise SettingsError for an unknown name, for a node in `only` that can be neither started nor replaced, and for
-        two nodes that a launch never starts together.
+        two nodes that are never launched together.
         """
         for argument, names in (("only", only or ()), ("replace", replaced)):
             for name in names:
@@ -116,7 +116,7 @@ class LaunchPlan:
 
 
 def _check_alternatives(nodes: Sequence[Launched]) -> None:
-    """Raise SettingsError if two nodes exclude each other, by `if` and `unless` with the same argument."""
+    """Raise SettingsError if two nodes exclude each other by `if` and `unless` with the same argument."""
     for one, other in combinations(nodes, 2):
         if exclusive(one.node, other.node):
             argument = _ARGUMENT.search(one.node.condition)
@@ -134,9 +134,9 @@ def named(one: Launched, names: Iterable[str]) -> bool:
 
 
 def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
-    """Return a launch file: a path relative to `folder`, or its name in the workspace around it.
+    """Return the path of a launch file, given relative to `folder` or by its name in the workspace around it.
 
-    Raise SettingsError if there is no such file; the message of the error begins with `where`.
+    Raise SettingsError, with a message that begins with `where`, if there is no such file.
     """
     path = existing(folder, file)
     if path is not None and path.is_file():
@@ -159,7 +159,7 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
 def launch_plan(file: Path, arguments: Mapping[str, object]) -> LaunchPlan:
     """Return the plan of a launch file for these launch arguments.
 
-    Raise SettingsError for an unknown argument, and if the file starts nothing.
+    Raise SettingsError if an argument is unknown, or if the file starts nothing.
     """
     search(file.parent)
     return _plan(file, tuple(sorted((str(name), _text(value)) for name, value in arguments.items())))
@@ -177,7 +177,7 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
     _check_arguments(launch, [name for name, _ in arguments])
     nodes = [one for one in launch.nodes if one.kind != "test"]
     if not nodes:
-        # a part of the file that could not be evaluated is the best explanation
+        # a part of the file that could not be evaluated explains it best
         reasons = [one.reason for one in sorted(launch.problems, key=lambda one: not one.hides)]
         why = f": {reasons[0]}" if reasons else " with these arguments"
         raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")
@@ -189,7 +189,7 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
 
 
 def _text(value: object) -> str:
-    """Return an argument as on the command line of `ros2 launch`."""
+    """Return an argument as typed for `ros2 launch`."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -215,11 +215,11 @@ def _name_in_code(path: Path) -> str:
     try:
         return node_name(ast.parse(path.read_bytes()))
     except (OSError, SyntaxError, ValueError):
-        return ""  # running the file reports the error
+        return ""  # running the file will report the error
 
 
 def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
-    """Yield the arguments of a node as roslaunch and ros2 launch give them, without its parameters."""
+    """Yield a node's arguments, as roslaunch and ros2 launch pass them, without its parameters."""
     try:
         yield from shlex.split(node.arguments)
     except ValueError:
@@ -236,7 +236,7 @@ def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
 
 
 def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
-    """Return why a node cannot be started, if a part of its description is known only on the robot, or ""."""
+    """Return why a node cannot be started if its description needs the robot, or an empty text."""
     remaps = [side for pair in node.remaps for side in pair]
     texts = [node.package, node.executable, node.name, node.namespace, node.arguments, *remaps]
     unknown = next((text for text in texts if "$(" in text), None)
@@ -270,7 +270,7 @@ def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
 
 
 def _names_of_several(nodes: Sequence[LaunchedNode]) -> list[str]:
-    """Return the names that are shared by several nodes, if a launch may start these nodes together."""
+    """Return the names shared by several nodes that may be launched together."""
     found: dict[tuple[str, str], list[LaunchedNode]] = {}
     for one in nodes:
         if one.name:

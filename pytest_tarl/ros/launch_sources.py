@@ -1,4 +1,4 @@
-"""The settings that launch files give a script, and advice for a node that lacks a parameter or its command line."""
+"""The settings that launch files give a script, and advice for a node without a parameter or command line."""
 
 from __future__ import annotations
 
@@ -9,16 +9,15 @@ from pathlib import Path
 from typing import Any, Final
 
 SHOWN: Final = 2  # maximum number of launch files in one sentence
-_LONGEST: Final = 40  # maximum length of a value in a sentence
+_LONGEST: Final = 40  # maximum characters of a value in a sentence
 
 
 @dataclass(frozen=True)
 class Source:
-    """A launch file that starts the script as `node`, with the values that it gives.
+    """A launch file that starts the script as `node`, and the values that it gives.
 
-    `name` is how `tarl.launch` finds the file. `argv` may contain substitutions that are only known on the robot;
-    `valueless` names the parameters whose values contain such substitutions. `required` holds the launch arguments
-    without a value.
+    `name` is how `tarl.launch` finds the file. `argv` may contain substitutions that are known only on the robot;
+    `valueless` names the parameters with such substitutions. `required` has the launch arguments that need a value.
     """
 
     file: Path
@@ -31,12 +30,12 @@ class Source:
 
     @property
     def complete(self) -> bool:
-        """Return whether everything that the file gives the node is known without further launch arguments."""
+        """Return whether all that the file gives the node is known without further launch arguments."""
         return not self.valueless and not any("$(" in one for one in self.argv)
 
     @property
     def call(self) -> str:
-        """Return the call that starts the node as this launch file does."""
+        """Return the call that starts the node in the way of this launch file."""
         values = ", ".join(f'"{one}": …' for one in self.required)
         arguments = f", arguments={{{values}}}" if values else ""
         return f'tarl.launch("{self.name}"{arguments}, only=["{self.node}"])'
@@ -46,9 +45,11 @@ class Source:
 class Given:
     """What launch files give a script: `private` parameters by name, `shared` ones by absolute name, and `argv`.
 
-    `note` names the file. `node` is the absolute name of the node if `tarl.launch` starts it, and empty if `tarl.start`
-    starts it. `valueless` holds the names of parameters without a usable value: the value is known only at launch, or
-    it is null in YAML, which ROS 1 cannot store. `sources` are all launch files that start the script.
+    - `note`: names the file
+    - `node`: the node's absolute name if `tarl.launch` starts it; empty for `tarl.start`
+    - `valueless`: parameters without a usable value, because it is known only at launch or is null in YAML, which ROS 1
+      cannot store
+    - `sources`: all launch files that start the script
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)
@@ -69,7 +70,7 @@ NOTHING: Final = Given()
 
 
 def parameter_from(sources: Sequence[Source], name: str) -> str:
-    """Return a sentence about the launch files that set a parameter of the script; "" if there is none."""
+    """Return a sentence on the launch files that set a parameter of the script; empty if there are none."""
 
     def stated(source: Source) -> str:
         shown = name if name.startswith("/") else f"~{name}"
@@ -81,7 +82,7 @@ def parameter_from(sources: Sequence[Source], name: str) -> str:
 
 
 def arguments_from(sources: Sequence[Source]) -> str:
-    """Return a sentence about the launch files that give the script a command line; "" if there is none."""
+    """Return a sentence on the launch files that give the script a command line; empty if there are none."""
 
     def stated(source: Source) -> str:
         words = [one if "$(" in one else shlex.quote(one) for one in source.argv]
@@ -91,7 +92,7 @@ def arguments_from(sources: Sequence[Source]) -> str:
 
 
 def _sentence(sources: Sequence[Source], stated: Callable[[Source], str]) -> str:
-    """Return what the launch files give the node, and the calls that use them."""
+    """Return what the launch files give the node, with the calls that use them."""
     giving = {(one.file, stated(one)): (one, stated(one)) for one in reversed(sources) if stated(one)}
     if not giving:
         return ""

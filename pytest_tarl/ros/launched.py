@@ -1,4 +1,4 @@
-"""Read a node's parameters and arguments from the launch files of its workspace."""
+"""Read a node's parameters and arguments from its workspace's launch files."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of 
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return what the file `launch` gives a script; without `launch`, what the launch files of the workspace give it.
+    """Return what the file `launch` gives a script or, without `launch`, what all the workspace's launch files give it.
 
     If these files differ, `launch_choice.chosen` decides. Raise SettingsError if the named file does not exist or does
     not start the script.
@@ -52,7 +52,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
 
 
 def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNode]]:
-    """Return the launch files that start a script, with its nodes.
+    """Return the launch files that start a script, with the nodes in question.
 
     If a file needs launch arguments for the node, it is replaced by the files that include it with these arguments.
     """
@@ -82,7 +82,7 @@ def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNo
 
 
 def _source(workspace: Workspace, launch: Launch, node: LaunchedNode) -> Source:
-    """Return a launch file as the source of the settings that it gives a node."""
+    """Return a launch file as the source of a node's settings."""
     package = workspace.package_of(launch.file)
     name = f"{package.name}/{launch.file.name}" if package is not None else launch.file.name
     own = node.name if node.name and "$(" not in node.name else node.executable
@@ -110,12 +110,12 @@ def python_files(package: Path) -> tuple[Path, ...]:
 
 
 def _given(launch: Launch, node: LaunchedNode) -> Given:
-    """Return what a launch file gives a node, with YAML parsed, for a test that starts it in the namespace `/`."""
+    """Return what a launch file gives a node, with parsed YAML, for a test that starts it in the namespace `/`."""
     found = parameters(launch, node, joined(node.namespace, node.name) if node.name else node.namespace + "/")
     argv = plain(node.arguments, for_ros2=launch.ros2)
     known = argv if not any("$(" in one for one in argv) else ()
     named = {_rooted(name, node): value for name, value in found.shared.items()}
-    # a `<rosparam ns="NODE">` in a group sets private parameters of the node under their absolute names
+    # in a group, `<rosparam ns="NODE">` sets the node's private parameters under their absolute names
     below = f"/{node.name}/" if node.name else "//"
     shared = {name: value for name, value in named.items() if not name.startswith(below)}
     private = {
@@ -132,7 +132,7 @@ def _given(launch: Launch, node: LaunchedNode) -> Given:
 
 
 def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
-    """Return the values of the parameters of a launched node, with YAML parsed."""
+    """Return the parameter values of a launched node, with parsed YAML."""
     private: dict[str, Any] = {}
     shared: dict[str, Any] = {}
     files: dict[Path, None] = {}
@@ -151,7 +151,7 @@ def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
 
 
 def _rooted(name: str, node: LaunchedNode) -> str:
-    """Move a name from the node's namespace to `/`, the namespace in which the test starts the node."""
+    """Move a name from the node's namespace to `/`, where the test starts the node."""
     inside = name.startswith(f"{node.namespace.rstrip('/')}/") and node.namespace != "/"
     return name.removeprefix(node.namespace.rstrip("/")) if inside else name
 
@@ -174,7 +174,7 @@ def _of_setting(setting: Setting, full_name: str) -> Iterator[Stated]:
 
 
 def _launches(workspace: Workspace, names: Sequence[str]) -> list[Launch]:
-    """Return the launch files that contain one of these names."""
+    """Return the launch files that contain any of these names."""
     words = [name.encode() for name in names]
     files = [file for package in workspace.packages for file in package.launch_files]
     return [_read(file, workspace) for file in files if any(word in _bytes(file) for word in words)]
@@ -198,7 +198,7 @@ def _read(file: Path, workspace: Workspace) -> Launch:
 
 @contextmanager
 def texts_replaced() -> Iterator[None]:
-    """Clear the caches of launch and parameter files on entry and exit, because their texts differ in the context."""
+    """Clear the caches of launch and parameter files on entry and exit, because their texts differ in between."""
     for clear in WITH_TEXTS:
         clear()
     try:

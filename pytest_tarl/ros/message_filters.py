@@ -1,4 +1,4 @@
-"""message_filters for both ROS generations: subscribers, caches, synchronisers."""
+"""message_filters for both ROS generations: subscribers, caches and synchronisers."""
 
 # ruff: noqa: N802 (names are message_filters')
 
@@ -14,7 +14,7 @@ __all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber",
 
 
 class SimpleFilter:
-    """Base of filters: sends messages to its callbacks."""
+    """The base of all filters: it sends messages to its callbacks."""
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
@@ -64,7 +64,7 @@ class Subscriber(SimpleFilter):
 
 
 class Cache(SimpleFilter):
-    """Keeps the last messages of a filter, ordered by stamp, and forwards them."""
+    """Keeps a filter's last messages, ordered by stamp, and forwards them."""
 
     def __init__(
         self, f: SimpleFilter | None = None, cache_size: int = 1, allow_headerless: bool = False
@@ -88,26 +88,26 @@ class Cache(SimpleFilter):
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
-        """Return the messages between two instants, both included."""
+        """Return the messages between two times, both inclusive."""
         low, high = _ns(from_stamp), _ns(to_stamp)
         return [message for stamp, message in self._kept if low <= stamp <= high]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
-        """Return the oldest message at or after an instant, or None if there is none."""
+        """Return the oldest message at or after a time, or None."""
         return next((message for time, message in self._kept if time >= _ns(stamp)), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
-        """Return the newest message at or before an instant, or None if there is none."""
+        """Return the newest message at or before a time, or None."""
         return next((message for time, message in reversed(self._kept) if time <= _ns(stamp)), None)
 
     def getLastestTime(self) -> Any:
-        """Return the newest message's stamp, or None if there is none (the name is message_filters')."""
+        """Return the newest message's stamp, or None (the name is misspelled in message_filters)."""
         return self._kept[-1][1].header.stamp if self._kept else None
 
     getLatestTime = getLastestTime  # noqa: N815
 
     def getOldestTime(self) -> Any:
-        """Return the oldest message's stamp, or None if there is none."""
+        """Return the oldest message's stamp, or None."""
         return self._kept[0][1].header.stamp if self._kept else None
 
     def getLast(self) -> Any:
@@ -169,7 +169,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return _time_of(message, self.allow_headerless)
 
     def _match(self, stamp: int, index: int) -> None:
-        """Forward the first set within the slop that contains the new message; try the nearest stamps first."""
+        """Forward the first set within the slop that contains the new message, trying the nearest stamps first."""
         near = [
             [stamp]
             if i == index

@@ -20,11 +20,11 @@ _STAND_IN: Final = (
     "give the node a small stand-in for it in your test (monkeypatch the call, or put a module of that name into "
     "sys.modules), or drive the node only through the parts that exist."
 )
-# minimum similarity of a suggested name; one letter in five to ten may differ
+# minimum similarity of a suggested name: one letter in five to ten may differ
 _ALIKE: Final = 0.8
 _IMPORT_FROM: Final = opmap["IMPORT_FROM"]
 _REPLACE: Final = "put a module of that name into sys.modules in your test"
-_ADVICE: Final[Mapping[str, str]] = {  # package → alternative for the user
+_ADVICE: Final[Mapping[str, str]] = {  # package → what to use instead
     "roslaunch": f"since tarl.launch starts launch files: call it in the test, or {_REPLACE}.",
     "image_transport": f"since its plugins are compiled libraries: {_REPLACE}, or use rospy and cv_bridge.",
 }
@@ -36,12 +36,12 @@ def unsupported(api: str) -> UnsupportedApiError:
 
 
 def unsupported_name(api: str) -> UnsupportedNameError:
-    """Return the error for an attribute that is not implemented, with advice; it is an AttributeError, too."""
+    """Return the error for a missing attribute, with advice; it is also an AttributeError."""
     return UnsupportedNameError(_sentence(api))
 
 
 def unsupported_module(name: str) -> UnsupportedModuleError:
-    """Return the error for a module that is not implemented, with advice; it is a ModuleNotFoundError, too."""
+    """Return the error for a missing module, with advice; it is also a ModuleNotFoundError."""
     return UnsupportedModuleError(_sentence(name), name=name)
 
 
@@ -53,14 +53,14 @@ def _sentence(api: str) -> str:
 
 
 def refuse(module: str, name: str) -> Exception:
-    """Return the error for a name that a stand-in module lacks; for dunder names, return Python's own error."""
+    """Return the error for a name that a stand-in lacks; Python's own error for dunder names."""
     if name.startswith("__"):
         return AttributeError(f"module {module!r} has no attribute {name!r}")
     return UnsupportedNameError(_of_name(module, name))
 
 
 def _of_name(module: str, name: str) -> str:
-    """Return the message for a missing name, including whether the real ROS module has this name."""
+    """Return the message for a missing name, including whether the real ROS module has it."""
     from pytest_tarl.ros.lacking_names import LACKING
 
     api = f"{module}.{name}"
@@ -75,9 +75,9 @@ def _of_name(module: str, name: str) -> str:
 
 
 def as_read_by(frame: FrameType | None, error: Exception) -> Exception:
-    """Convert an UnsupportedNameError to an ImportError if the frame runs `from module import name`; else return it.
+    """Return an ImportError instead of an UnsupportedNameError if the frame runs `from module import name`.
 
-    Python replaces an AttributeError of this statement by an ImportError that has no advice.
+    Python itself would replace the AttributeError by an ImportError without advice.
     """
     if not isinstance(error, UnsupportedNameError) or frame is None:
         return error

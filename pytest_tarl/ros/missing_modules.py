@@ -1,4 +1,4 @@
-"""Advice for a node that imports a module found neither in this interpreter nor in the workspace."""
+"""Advice for an import of a module that is neither in this interpreter nor in the workspace."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _OF_PYTHON_2: Final = frozenset(
     ["ConfigParser", "HTMLParser", "Queue", "StringIO", "Tkinter", "cPickle", "commands", "cookielib", "cv", "httplib",
      "sets", "thread", "urllib2", "urlparse"]
 )  # fmt: skip
-_PIP_NAMES: Final[Mapping[str, str]] = {  # module → pip package, if the names differ
+_PIP_NAMES: Final[Mapping[str, str]] = {  # module → pip package, where the names differ
     "Crypto": "pycryptodome",
     "OpenGL": "PyOpenGL",
     "PIL": "pillow",
@@ -40,20 +40,20 @@ _COMPILED: Final = frozenset(["ompl", "openravepy", "pcl", "trac_ik_python"])
 
 
 def module_advice(error: ModuleNotFoundError, line: str = "") -> str:
-    """Return one sentence that says how to make a failed import work; `line` is the line of code that imports."""
+    """Return a sentence on how to make a failed import work; `line` is the importing line of code."""
     root, _, inner = (error.name or "").partition(".")
     if inner in PARTS:
         return interface_advice(
             f"{root}.{inner}"
         )  # the package has Python modules, but no definitions were found
     if inner or not root:
-        return ""  # the package is there, so the name is misspelled
+        return ""  # the package exists, so the name is misspelled
     interface = re.search(rf"\b{re.escape(root)}\.({'|'.join(PARTS)})\b", line)
     return _in_workspace(root) or (_definitions(root, interface[1]) if interface else _elsewhere(root))
 
 
 def interface_advice(module: str) -> str:
-    """Return a sentence if a module, such as `robot.srv`, should contain types but no package defines any; else ""."""
+    """Return a sentence if a module such as `robot.srv` should have types but no package defines any, or ""."""
     root, _, part = module.partition(".")
     known = packages().get(root)
     if part not in PARTS or (known is not None and any(one.suffix == f".{part}" for one in known.interfaces)):
@@ -62,7 +62,7 @@ def interface_advice(module: str) -> str:
 
 
 def _definitions(root: str, part: str) -> str:
-    """Return a sentence for a package whose messages, services or actions are imported and not defined anywhere."""
+    """Return a sentence on a package whose imported messages, services or actions are defined nowhere."""
     return (
         f"No package of the workspace {_workspaces()} defines {root}.{part}: put a copy of the package {root}, or only "
         f"its .{part} files in a folder {root}/{part}, into the workspace."
@@ -74,7 +74,7 @@ def _workspaces() -> str:
 
 
 def _in_workspace(root: str) -> str:
-    """Return a sentence if the workspace has a package or files of that name, else an empty string."""
+    """Return a sentence if the workspace has a package or files of this name, or an empty text."""
     known = packages().get(root)
     if known is not None:
         return (
@@ -96,7 +96,7 @@ def _in_workspace(root: str) -> str:
 
 
 def _elsewhere(root: str) -> str:
-    """Return a sentence for a module that comes from outside the workspace."""
+    """Return a sentence on a module that comes from outside the workspace."""
     if root in _OF_PYTHON_2:
         return PYTHON_2
     missing = f"No package of the workspace {_workspaces()} installs {root}, and it is not installed here"

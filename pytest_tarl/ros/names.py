@@ -13,12 +13,12 @@ from pytest_tarl.ros.command_line_values import parse_value
 from pytest_tarl.ros_names import namespace_problem, node_problem, objection
 
 _PART = r"(?:[A-Za-z_]|\\[1-9])(?:[A-Za-z0-9_]|\\[1-9])*"
-_NEW_NAME = re.compile(rf"(?:~/|/)?{_PART}(?:/{_PART})*")  # `\1` stands for a part that a wildcard matched
+_NEW_NAME = re.compile(rf"(?:~/|/)?{_PART}(?:/{_PART})*")  # `\1` stands for what a wildcard matched
 
 
 @dataclass(frozen=True, slots=True)
 class CommandLine:
-    """The parts of a ROS command line; `rest` are the program's own arguments."""
+    """The parts of a ROS command line; `rest` has the program's own arguments."""
 
     remappings: Mapping[str, str] = field(default_factory=dict)
     parameters: Mapping[str, Any] = field(default_factory=dict)
@@ -28,19 +28,19 @@ class CommandLine:
 
 
 def absolute(name: str) -> str:
-    """Add the leading slash to a name and remove doubled and trailing ones, such as `odom` → `/odom`."""
+    """Return a name with a leading slash and without doubled or trailing ones: `odom` becomes `/odom`."""
     return "/" + "/".join(part for part in name.split("/") if part)
 
 
 def given_name(name: object) -> str:
-    """Return the absolute form of a name that a test gives. Raise RecordingError if no node can use the name."""
+    """Return the absolute form of a name from a test. Raise RecordingError if no node can use it."""
     if wrong := objection(name):
         raise RecordingError(f"The name of a topic or service {wrong}.")
     return absolute(str(name))
 
 
 def require_remapping(old: str, new: str) -> None:
-    """Raise RecordingError for a test's remapping to a name that no node can use; it may be private."""
+    """Raise RecordingError if a test remaps to a name that no node can use; private names are allowed."""
     if wrong := objection(new.removeprefix("~") if isinstance(new, str) else new):
         raise RecordingError(f"The remapping of {old!r} to {new!r} is invalid: the new name {wrong}.")
 
@@ -48,8 +48,8 @@ def require_remapping(old: str, new: str) -> None:
 def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
     """Resolve a name used in the node `node`.
 
-    `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping is compared with the
-    resolved name: its left side is resolved, too.
+    `~x` is private to the node, `/x` is global, and `x` is relative to the node's namespace. A remapping applies if its
+    left side, once resolved, equals the resolved name.
     """
     resolved = expand(name, node)
     for old, new in remappings.items():
@@ -89,7 +89,7 @@ def parse_ros1(arguments: Iterable[str]) -> CommandLine:
 
 
 def _require_remapping(option: str, rule: str) -> None:
-    """Raise RuntimeError, as rcl does, for a rule whose new name is not valid."""
+    """Raise RuntimeError, as rcl does, if a rule's new name is not valid."""
     left, mark, right = rule.partition(":=")
     if left in ("__node", "__name"):
         wrong = node_problem(right) is not None
@@ -104,7 +104,7 @@ def _require_remapping(option: str, rule: str) -> None:
 def parse_ros2(arguments: Iterable[str]) -> CommandLine:
     """Read `--ros-args -r old:=new -p name:=value --params-file file …` up to `--`.
 
-    Node-specific rules keep their `node:` prefix; parameters from files stay grouped by node name.
+    Rules for one node keep their `node:` prefix; parameters from files stay grouped by node name.
     """
     remappings: dict[str, str] = {}
     parameters: dict[str, Any] = {}

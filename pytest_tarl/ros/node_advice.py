@@ -1,4 +1,4 @@
-"""Advice on a node's error: what is missing and what to do."""
+"""Advice on a node's error: what is missing, and what to do."""
 
 from __future__ import annotations
 
@@ -34,16 +34,15 @@ _NO_SERVICE: Final = re.compile(r"^service \[(.+)\] unavailable")
 _NO_FRAME: Final = re.compile(r'"([^"]+)" passed to lookupTransform argument does not exist')
 _ABSENT_PARTNERS: Final = ("ServiceException", "TransformException", "LookupException")
 _NONE: Final = re.compile(r"\bNone(Type)?\b")
-_WORD: Final = 4  # minimum length of a word that can resemble a parameter's name
+_WORD: Final = 4  # a word must have this many letters to count as similar to a parameter's name
 _SHOWN: Final = 3  # maximum number of parameters in one sentence
 _ARGUMENTS: Final = re.compile(r"\bargv\b|\bmyargv\b|\bparse_(known_)?args\b")
 
 
 def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str:
-    """Return one sentence of advice about a node's error; empty if the error's own text is enough.
+    """Return a sentence of advice on a node's error; empty if the error's own text is enough.
 
-    `given` contains what launch files pass to the node; `unset` contains the parameters without a value that
-    it asked for.
+    `given` is what launch files pass to the node; `unset` has the parameters without a value that it asked for.
     """
     text = text_of(error)
     if isinstance(error, SyntaxError):
@@ -71,7 +70,7 @@ def advice(error: BaseException, given: Given, unset: Sequence[str] = ()) -> str
 
 
 def _of_values(error: BaseException, text: str, unset: Sequence[str]) -> str:
-    """Return advice for a node that lacks values, another node, or an argument of a library; else ""."""
+    """Return advice for a node that lacks values, another node, or a library's argument; otherwise ""."""
     if unset and isinstance(error, TypeError | AttributeError | ValueError) and _NONE.search(text):
         return _of_unset(unset, _line_of(error))
     if type(error).__name__ in _ABSENT_PARTNERS:
@@ -90,12 +89,12 @@ def _of_import(error: ImportError) -> str:
         return module_advice(error, _line_of(error))
     if error.name is None:
         return ""
-    # a module without a path is a folder without Python files, or is part of Python itself
+    # a module without a path is a folder without Python files, or built into Python
     return interface_advice(error.name) or removed_name(error.name, text_of(error))
 
 
 def _of_partner(text: str) -> str:
-    """Return advice for a service or a frame that neither a node nor the test provides."""
+    """Return advice for a service or frame that no node and no test provides."""
     service, frame = _NO_SERVICE.search(text), _NO_FRAME.search(text)
     if service is not None:
         return f'No node offers it: offer it in the test with tarl.bus.serve("{service[1]}", type, handler).'
@@ -108,9 +107,9 @@ def _of_partner(text: str) -> str:
 
 
 def _of_unset(unset: Sequence[str], line: str) -> str:
-    """Return advice for a node that fails with None after it has asked for parameters without a value.
+    """Return advice for a node that fails with None after reading parameters without a value.
 
-    Parameters whose name resembles a word of the failed line come first.
+    Parameters whose names resemble a word in the failing line come first.
     """
     words = [one for one in re.findall(r"\w+", line) if len(one) >= _WORD]
 
@@ -127,7 +126,7 @@ def _of_unset(unset: Sequence[str], line: str) -> str:
 
 
 def _of_lookup(error: KeyError, given: Given) -> str:
-    """Return advice for a parameter or an environment variable that is not set."""
+    """Return advice for a missing parameter or environment variable."""
     last = _innermost(error)
     if last is None or not error.args:
         return ""
@@ -142,7 +141,7 @@ def _of_lookup(error: KeyError, given: Given) -> str:
 
 
 def _of_parameter(plain: str, given: Given) -> str:
-    """Return advice for a parameter that has no value."""
+    """Return advice for a parameter without a value."""
     sources = parameter_from(given.sources, plain)
     if sources:
         return f'{sources}, or pass parameters={{"{plain}": …}} to tarl.start.'
@@ -155,7 +154,7 @@ def _of_parameter(plain: str, given: Given) -> str:
 
 
 def _of_arguments(error: BaseException, given: Given) -> str:
-    """Return advice about missing command line arguments, including the message of the node's argument parser."""
+    """Return advice on missing command line arguments, with the message of the node's argument parser."""
     sources = arguments_from(given.sources)
     hint = f"{sources}, or pass argv=[…] to tarl.start." if sources else "pass argv=[…] to tarl.start."
     for frame in _frames(error):
@@ -178,7 +177,7 @@ def _line_of(error: BaseException) -> str:
 
 
 def _divides(error: BaseException) -> bool:
-    """Return whether the file of the node that raised the error divides by `/`."""
+    """Return whether the node's file that raised the error divides by `/`."""
     own = _of_program(error)
     text = "".join(linecache.getlines(own[-1].tb_frame.f_code.co_filename)) if own else ""
     try:
@@ -188,7 +187,7 @@ def _divides(error: BaseException) -> bool:
 
 
 def _of_program(error: BaseException) -> list[TracebackType]:
-    """Return the entries of an error's traceback that are in the node's own files."""
+    """Return the entries of an error's traceback in the node's own files."""
     entries = [*_traceback(error)]
     began = next(
         (place for place, one in enumerate(entries) if one.tb_frame.f_globals.get("__name__") == "__main__"),
@@ -214,7 +213,7 @@ def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
 
 
 def _is_argv(value: object) -> bool:
-    """Return whether a node's variable has the value of `sys.argv`; call no code of the variable's class.
+    """Return whether a node's variable equals `sys.argv`, without calling code of its class.
 
     Arrays compare element by element, and other objects may raise.
     """
@@ -222,9 +221,9 @@ def _is_argv(value: object) -> bool:
 
 
 def _statement_and_conditions(file: str, line: int) -> Iterator[str]:
-    """Yield the line of a file, and the conditions of the `if` statements around it.
+    """Yield a line of a file, and the conditions of the `if` statements around it.
 
-    After each condition, yield the values that the file assigns to the names in the condition.
+    Each condition is followed by the values that the file assigns to names in the condition.
     """
     yield linecache.getline(file, line)
     try:

@@ -1,7 +1,7 @@
-"""OpenCV windows of nodes: nothing is drawn, and `cv2.waitKey` waits in virtual time for keys that the test types.
+"""OpenCV windows of nodes: nothing is drawn, and `cv2.waitKey` waits in virtual time for keys typed by the test.
 
-A test machine often has no display, its OpenCV often lacks windows (`opencv-python-headless`), and a real window would
-wait in real time. Everything else in `cv2`, such as images and drawing, is the real library.
+Test machines often have no display, their OpenCV often has no windows (`opencv-python-headless`), and a real window
+would wait in real time. The rest of `cv2`, such as images and drawing, is the real library.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from pytest_tarl.ros.keyboard import own_terminal
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import Process, running_process
 
-_NO_KEY = -1  # return value of waitKey without a key
+_NO_KEY = -1  # return value of waitKey if no key is typed
 _LIBRARY = "cv2"
 
 
 class Windows:
-    """The windows of one node: their names, and the positions of their trackbars."""
+    """The windows of a node: their names, and their trackbars' positions."""
 
     def __init__(self, _process: Process) -> None:
         self.names: set[str] = set()
@@ -44,11 +44,11 @@ class Windows:
         self.names.clear()
 
     def look(self, name: str, _property: int = 0) -> float:
-        """Return 1.0 for a property of an open window, and -1.0 if the window does not exist."""
+        """Return 1.0 for a property of an open window, and -1.0 if there is no such window."""
         return 1.0 if name in self.names else -1.0
 
     def place(self, _name: str) -> tuple[int, int, int, int]:
-        """Return the rectangle of a window whose size is unknown."""
+        """Return a rectangle for a window, whose size is unknown."""
         return (0, 0, -1, -1)
 
     def add_trackbar(
@@ -64,18 +64,18 @@ class Windows:
         self.moved[trackbarName, windowName] = onChange
 
     def position(self, trackbarname: str, winname: str) -> int:
-        """Return the position of a trackbar, or -1 if there is none of that name."""
+        """Return a trackbar's position, or -1 if it does not exist."""
         return self.positions.get((trackbarname, winname), -1)
 
     def move(self, trackbarname: str, winname: str, pos: int) -> None:
-        """Move a trackbar, and call its callback if the position is new."""
+        """Move a trackbar, and call its callback if the position changes."""
         place = (trackbarname, winname)
         if self.positions.get(place, pos) != pos:
             self.positions[place] = pos
             self.moved[place](pos)
 
     def wait(self, delay: int = 0) -> int:
-        """Return the code of the next key that the test types, or -1 after `delay` ms without a key (0: no limit)."""
+        """Return the code of the next key typed by the test, or -1 after `delay` ms without one (0: no limit)."""
         return _code(nanoseconds(delay / 1000) if delay > 0 else None)
 
     def poll(self) -> int:
@@ -94,7 +94,7 @@ def _code(patience: int | None) -> int:
     return ord(key) if key else _NO_KEY
 
 
-_FUNCTIONS: Mapping[str, Callable[..., Any]] = {  # function of cv2 → what nodes call in its place
+_FUNCTIONS: Mapping[str, Callable[..., Any]] = {  # function of cv2 → what nodes call instead
     "namedWindow": Windows.open,
     "imshow": Windows.open,
     "destroyWindow": Windows.close,
@@ -118,7 +118,7 @@ _FUNCTIONS: Mapping[str, Callable[..., Any]] = {  # function of cv2 → what nod
 
 
 class _OfNodes:
-    """Replaces a function of cv2: in a node, it acts on the node's windows; elsewhere, it calls the library."""
+    """Replaces a function of cv2: nodes use their own windows, other code the library."""
 
     def __init__(self, real: Callable[..., Any], ours: Callable[..., Any]) -> None:
         self.real = real
@@ -132,7 +132,7 @@ class _OfNodes:
 
 
 class _Finder:
-    """Replace the functions as soon as a node imports OpenCV."""
+    """Replaces the functions when a node imports OpenCV."""
 
     def __init__(self) -> None:
         self._importing = False
@@ -140,8 +140,8 @@ class _Finder:
     def find_spec(
         self, name: str, _path: Sequence[str] | None = None, _target: object = None
     ) -> ModuleSpec | None:
-        """Find OpenCV itself, with a loader that replaces the functions."""
-        # during the import, OpenCV imports its binary module under the same name
+        """Find OpenCV itself; its loader replaces the functions."""
+        # while it is imported, OpenCV imports its binary module under the same name
         if name != _LIBRARY or self._importing:
             return None
         self._importing = True
@@ -184,9 +184,9 @@ class _ReplacingLoader(Loader):
 
 @contextmanager
 def windows_discarded() -> Iterator[None]:
-    """Replace the window functions of OpenCV for nodes, whether OpenCV is imported already or a node imports it later.
+    """Replace OpenCV's window functions for nodes, whether OpenCV is already imported or a node imports it later.
 
-    A function that the test itself has replaced stays in place.
+    Functions that the test itself has replaced stay.
     """
     finder = _Finder()
     sys.meta_path.insert(0, finder)

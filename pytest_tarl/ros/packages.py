@@ -59,7 +59,7 @@ def _folder(package: str) -> Path | None:
 
 
 def get_package_share_directory(package_name: str) -> str:
-    """Return a package's source folder, which stands in for its share directory. Raise PackageNotFoundError."""
+    """Return a package's source folder instead of its share directory. Raise PackageNotFoundError."""
     found = _folder(package_name)
     if found is None:
         raise PackageNotFoundError(_absent(package_name))
@@ -77,7 +77,7 @@ def get_package_prefix(package_name: str) -> str:
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """Return all packages and their folders."""
+    """Return all packages with their folders."""
     return {name: str(folder) for name, folder in package_folders().items()}
 
 
@@ -90,7 +90,7 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
 
 
 def get_package_name(path: str) -> str | None:
-    """Return the name of the package that contains a path, or None outside packages."""
+    """Return the name of the package that contains a path, or None."""
     place = Path(path).resolve()
     around = [
         (len(folder.parts), name)
@@ -101,18 +101,18 @@ def get_package_name(path: str) -> str | None:
 
 
 def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
-    """Return folder and name of the package that contains a path; (None, None) outside packages."""
+    """Return folder and name of the package that contains a path, or (None, None)."""
     name = get_package_name(d)
     return (None, None) if name is None else (str(_folder(name)), name)
 
 
 def get_log_dir(env: Mapping[str, str] | None = None) -> str:
-    """Return the folder of ROS's logs: `ROS_LOG_DIR`, or else `log` in `get_ros_home`."""
+    """Return the folder for ROS's logs: `ROS_LOG_DIR`, or `log` in `get_ros_home`."""
     return (os.environ if env is None else env).get("ROS_LOG_DIR") or str(Path(get_ros_home(env)) / "log")
 
 
 def get_ros_home(env: Mapping[str, str] | None = None) -> str:
-    """Return the folder of ROS's logs and settings: `ROS_HOME`, or else `.ros` in the home folder."""
+    """Return the folder for ROS's logs and settings: `ROS_HOME`, or `.ros` in the home folder."""
     given = os.environ if env is None else env
     return given.get("ROS_HOME") or str(Path.home() / ".ros")
 
@@ -123,12 +123,12 @@ def get_ros_package_path(env: Mapping[str, str] | None = None) -> str | None:
 
 
 def find_node(pkg: str, node_type: str) -> list[str]:
-    """Return the paths of a package's executable files of that name. Raise InvalidROSPkgException for the package."""
+    """Return the paths of a package's executables with this name. Raise InvalidROSPkgException if it is unknown."""
     return [found for found in find_resource(pkg, node_type) if os.access(found, os.X_OK)]
 
 
 def find_resource(pkg: str, resource_name: str) -> list[str]:
-    """Return the paths of a package's files of that name. Raise InvalidROSPkgException for an unknown package."""
+    """Return the paths of a package's files with this name. Raise InvalidROSPkgException if it is unknown."""
     folder = Path(str(get_pkg_dir(pkg)))
     named = folder / resource_name
     inside = [one for one in sorted(folder.rglob(named.name)) if one.is_file() and one != named]

@@ -12,11 +12,11 @@ _ABSENT = object()
 
 
 class ParameterServer:
-    """The tree of parameters that all rospy nodes of an episode share."""
+    """The tree of parameters shared by all rospy nodes of an episode."""
 
     def __init__(self, given: Mapping[str, Any]) -> None:
         self._root: dict[str, Any] = {}
-        self._private: dict[str, Any] = {}  # private parameters from the test, for every node
+        self._private: dict[str, Any] = {}  # the test's private parameters, for every node
         self.take(given)
 
     def take(self, given: Mapping[str, Any]) -> None:
@@ -34,7 +34,7 @@ class ParameterServer:
                 self.set(f"{node}/{name}", value)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return the value, or the subtree as a dictionary."""
+        """Return a value, or a subtree as a dictionary."""
         branch: Any = self._root
         for key in keys_of(name):
             if not isinstance(branch, dict) or key not in branch:
@@ -56,7 +56,7 @@ class ParameterServer:
         branch[keys[-1]] = deepcopy(value)
 
     def fill(self, name: str, value: Any) -> None:
-        """Set a value or the leaves of a subtree, without overwriting."""
+        """Set a value, or the leaves of a subtree, unless they are already set."""
         if isinstance(value, dict) and value:
             for key, inner in value.items():
                 self.fill(f"{name}/{key}", inner)

@@ -1,4 +1,4 @@
-"""`sensor_msgs.point_cloud2` (ROS 1) and `sensor_msgs_py.point_cloud2` (ROS 2): points to clouds and back."""
+"""`sensor_msgs.point_cloud2` (ROS 1) and `sensor_msgs_py.point_cloud2` (ROS 2): convert points to clouds and back."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def dtype_from_fields(
 def _structured(cloud: Any, names: Sequence[str] | None, skip_nans: bool, uvs: Any) -> Any:
     """Return the points as a structured array.
 
-    `uvs` selects points. In ROS 1, it holds their columns and rows; if it is empty, all points are selected. In ROS 2,
-    it holds their numbers, counted after the points with NaN are left out; a dense cloud is not searched for NaN.
+    `uvs` selects points. In ROS 1, it has their columns and rows; if it is empty, all points are selected. In ROS 2, it
+    has their indices, counted without points that have NaN; in a dense cloud, no point is checked for NaN.
     """
     import numpy as np
 
@@ -82,7 +82,7 @@ def read_points(
     uvs: Any = None,
     reshape_organized_cloud: bool = False,
 ) -> Any:
-    """Return the points: tuples one by one in ROS 1, a structured array in ROS 2."""
+    """Return the points: one tuple at a time in ROS 1, a structured array in ROS 2."""
     points = _structured(cloud, field_names, skip_nans, uvs)
     if _is_ros1(cloud):
         return _one_by_one(points)
@@ -107,7 +107,7 @@ def read_points_list(
 def read_points_numpy(cloud: Any, field_names: Any = None, skip_nans: bool = False, uvs: Any = None) -> Any:
     """Return the points as a plain array of shape (points, fields).
 
-    Raise AssertionError, as in ROS, unless all fields have the same type.
+    Raise AssertionError, as ROS does, unless all fields have the same type.
     """
     import numpy as np
 

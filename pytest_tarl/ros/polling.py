@@ -1,9 +1,9 @@
-"""Make polling tasks wait. A task polls if it reads the time or the state of ROS in a loop that never waits.
+"""Make polling tasks wait: those that read the time or the state of ROS in a loop that never waits.
 
 On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock advances only when every task
-waits, so such a loop would never end. Therefore a task that polls PATIENCE times at one instant waits for PAUSE. From
-then on, it waits after every AGAIN polls, until it waits by itself. These limits are counts, so the result does not
-depend on real time.
+waits, so such a loop would never end. A task that polls PATIENCE times without time passing therefore waits for PAUSE.
+From then on, it waits after every AGAIN polls, until it waits by itself. These limits are counts, so the result does
+not depend on real time.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from __future__ import annotations
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import running_task
 
-AGAIN = 10  # number of polls of a polling task between two waits
-PAUSE = nanoseconds(0.01)  # virtual time that a polling task waits (ns)
+AGAIN = 10  # number of polls between two waits of a polling task
+PAUSE = nanoseconds(0.01)  # virtual time for which a polling task waits (ns)
 
 
 def asked() -> None:

@@ -1,4 +1,4 @@
-"""`tf_conversions` and its `posemath`: frames of PyKDL from and to messages, tf and matrices."""
+"""`tf_conversions` and its `posemath`: convert frames of PyKDL to and from messages, tf and matrices."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["fromMatrix", "fromMsg", "fromTf", "toMatrix", "toMsg", "toTf"]
 
 
 def fromTf(tf: Sequence[Sequence[float]]) -> Frame:  # noqa: N802 (these names are posemath's)
-    """Return the frame of a position and a quaternion, as `TransformListener.lookupTransform` returns them."""
+    """Return the frame for a position and a quaternion, as returned by `TransformListener.lookupTransform`."""
     position, quaternion = tf
     return Frame(Rotation.Quaternion(*quaternion), Vector(*position))
 
@@ -30,7 +30,7 @@ def fromMsg(p: Any) -> Frame:  # noqa: N802
 
 
 def toMsg(f: Frame) -> Any:  # noqa: N802
-    """Return a frame as a geometry_msgs/Pose of the importing node's ROS."""
+    """Return a frame as a geometry_msgs/Pose of the importing node's ROS generation."""
     from pytest_tarl.ros.install import kind_of_caller
     from pytest_tarl.ros.messages import class_of
 

@@ -1,4 +1,4 @@
-"""One started program, like an operating system process: arguments, tasks, shutdown."""
+"""A started program, with what an operating system process has: arguments, tasks, shutdown."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from pytest_tarl.ros.watchdog import WATCHDOG
 
 Part = TypeVar("Part")
 
-_PATIENCE = 1_000  # a task ignores the shutdown if more than this number of its waits return at once
-_LONGEST = 100  # maximum length of a node's last words in a message
-_ROUNDS = 5  # maximum number of rounds for the tasks of an ending process; then they are killed
+_PATIENCE = 1_000  # a task counts as ignoring the shutdown if more than this many of its waits return at once
+_LONGEST = 100  # maximum characters of a node's last words in a message
+_ROUNDS = 5  # maximum number of rounds for an ending process's tasks, before they are killed
 
 
 class Network:
-    """State shared by the processes of an episode: clock, topics, services, parameters.
+    """What the processes of an episode share: clock, topics, services and parameters.
 
-    `part` holds state that a client library shares between processes, such as its actions.
+    `part` has state that a client library shares between processes, such as its actions.
     """
 
     def __init__(
@@ -44,12 +44,12 @@ class Network:
         self.services = ServiceDirectory(self.scheduler)
         self.bus = Bus(self.scheduler, run, self.services)
         self.processes: list[Process] = []
-        # absolute name of a parameter → its number, if nodes read it
+        # absolute parameter name → number, for parameters that nodes have read
         self.parameters_read: dict[str, bool | int | float] = {}
         self._parts: dict[Any, Any] = {}
 
     def read(self, name: str, value: Any) -> None:
-        """Note that a node reads a parameter: its number, or the numbers of a subtree."""
+        """Note that a node reads a parameter: its number, or all numbers of a subtree."""
         if isinstance(value, Mapping):
             for key, inner in value.items():
                 self.read(f"{name}/{key}", inner)
@@ -85,8 +85,8 @@ class Process:
         self._refused = 0
         self.launched = NOTHING  # parameters from a launch file
         self.unset: dict[str, None] = {}  # missing parameters that the node asked for, by the names it used
-        self.label = name  # name shown in messages; the node's name once the node has one
-        self.errors: list[NodeError] = []  # errors during shutdown
+        self.label = name  # name shown in messages; changes to the node's name once known
+        self.errors: list[NodeError] = []  # errors while shutting down
         self._parts: dict[Any, Any] = {}
         self._at_end: list[Callable[[], None]] = []
 
@@ -108,7 +108,7 @@ class Process:
         return found
 
     def at_end(self, hook: Callable[[], None]) -> None:
-        """Register `hook` to be called at shutdown, before tasks are woken."""
+        """Register `hook` for shutdown; it is called before tasks are woken."""
         self._at_end.append(hook)
 
     def run(self, program: Callable[[], None]) -> None:
@@ -121,7 +121,7 @@ class Process:
         program()
 
     def failed(self, task: Task, error: BaseException) -> None:
-        """Handle the exception that ended a task; an exception of the node becomes a NodeError."""
+        """Handle the exception that ended a task; if the node raised it, it becomes a NodeError."""
         if self.ending and getattr(error, "tarl_shutdown", False):
             return
         if isinstance(error, Spinning):
@@ -145,7 +145,7 @@ class Process:
             self.scheduler.later(self.end)
 
     def end(self) -> None:
-        """End the process: call hooks, let every task return, then kill the rest. Called outside tasks."""
+        """End the process: call hooks, let every task return, then kill the rest. Call this outside tasks."""
         if self._closing:
             return
         self._closing = True
@@ -164,7 +164,7 @@ class Process:
         self.bus.disconnect(self)
 
     def kill(self) -> None:
-        """End the process immediately without running its hooks, as SIGKILL does. Call this outside tasks."""
+        """End the process at once, without hooks, as SIGKILL does. Call this outside tasks."""
         self._closing = self.ending = True
         for _ in range(_ROUNDS):
             for task in tuple(self.tasks):
@@ -173,7 +173,7 @@ class Process:
         self.bus.disconnect(self)
 
     def ask_to_end(self) -> None:
-        """Mark the process as ending, call the hooks and wake every task."""
+        """Mark the process as ending, call the hooks, and wake every task."""
         self.ending = True
         for hook in self._at_end:
             hook()
@@ -215,7 +215,7 @@ class Process:
 
 
 def _status(error: SystemExit) -> str:
-    """Return the exit status, or 1 and the first line for an exit with a string."""
+    """Return the exit status; for an exit with a string, 1 and its first line."""
     if isinstance(error.code, int):
         return str(error.code)
     first = next((one.strip() for one in text_of(error.code).splitlines() if one.strip()), "")
@@ -223,7 +223,7 @@ def _status(error: SystemExit) -> str:
 
 
 def _of_pytest(error: BaseException) -> bool:
-    """Return whether an exception comes from pytest.fail, skip or exit, without importing pytest."""
+    """Return whether an exception is from pytest.fail, skip or exit, without importing pytest."""
     return any(kind.__module__ == "_pytest.outcomes" for kind in type(error).__mro__)
 
 

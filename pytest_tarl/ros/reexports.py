@@ -1,7 +1,7 @@
-"""Names that a module of rclpy, rospy, tf2_ros or actionlib only imports from another module.
+"""Names that a module of rclpy, rospy, tf2_ros or actionlib imports from another module.
 
-Editors offer such names for completion, so some nodes import them from there. The names are those of rclpy 9.1, rospy
-1.15, tf2_ros 0.7 and actionlib 1.14.
+Editors suggest such names, so some nodes import them from there. The names are those of rclpy 9.1, rospy 1.15, tf2_ros
+0.7 and actionlib 1.14.
 """
 
 from __future__ import annotations
@@ -233,7 +233,7 @@ REEXPORTED: Final[
 
 @cache
 def _homes(module: str) -> Mapping[str, tuple[str, str]]:
-    """Return the module and the original name of each name that a module re-exports."""
+    """Return, for each name that a module re-exports, its module of definition and its original name."""
     return {
         name: (home, original or name)
         for home, names in REEXPORTED.get(module, {}).items()
@@ -242,11 +242,11 @@ def _homes(module: str) -> Mapping[str, tuple[str, str]]:
 
 
 def is_reexported(module: str, name: str) -> bool:
-    """Return whether a module only imports a name from another module."""
+    """Return whether a module imports a name from another module."""
     return name in _homes(module)
 
 
 def reexported(module: str, name: str) -> Any:
-    """Return the object behind a re-exported name. The importing node must run in an episode."""
+    """Return the object behind a re-exported name; the importing node must run in an episode."""
     home, original = _homes(module)[name]
     return getattr(import_module(home), original)

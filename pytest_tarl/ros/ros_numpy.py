@@ -90,7 +90,7 @@ def numpy_to_image(arr: Any, encoding: str) -> Any:
 
 
 def occupancygrid_to_numpy(msg: Any) -> Any:
-    """Return a map as a masked array of shape (height, width); unknown cells are masked."""
+    """Return a map as a masked array of shape (height, width), with unknown cells masked."""
     import numpy as np
 
     data: Any = np.asarray(msg.data, dtype=np.int8).reshape(msg.info.height, msg.info.width)
@@ -98,9 +98,9 @@ def occupancygrid_to_numpy(msg: Any) -> Any:
 
 
 def numpy_to_occupancy_grid(arr: Any, info: Any = None) -> Any:
-    """Return an array of shape (height, width) as a map; masked cells become unknown.
+    """Return an array of shape (height, width) as a map, with masked cells unknown.
 
-    Raise TypeError unless the array is two-dimensional and of int8.
+    Raise TypeError unless the array is two-dimensional with type int8.
     """
     import numpy as np
 
@@ -126,7 +126,7 @@ def pointcloud2_to_array(cloud_msg: Any, squeeze: bool = True) -> Any:
 
 
 def array_to_pointcloud2(cloud_arr: Any, stamp: Any = None, frame_id: str | None = None) -> Any:
-    """Return a structured array, of one or two dimensions, as a cloud."""
+    """Return a structured array with one or two dimensions as a cloud."""
     import numpy as np
 
     rows: Any = np.atleast_2d(cloud_arr)
@@ -173,7 +173,7 @@ def pointcloud2_to_xyz_array(cloud_msg: Any, remove_nans: bool = True) -> Any:
 
 
 def split_rgb_field(cloud_arr: Any) -> Any:
-    """Return a structured array with fields r, g and b (uint8) in place of the packed field rgb."""
+    """Return a structured array in which the fields r, g and b (uint8) replace the packed field rgb."""
     import numpy as np
 
     packed = np.ascontiguousarray(cloud_arr["rgb"]).view(np.uint32)
@@ -213,7 +213,7 @@ _FROM_ARRAY: dict[str, Callable[..., Any]] = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a submodule without an explicit import; raise for a name that the stand-in lacks."""
+    """Return a submodule that was not imported explicitly; raise for a name that the stand-in lacks."""
     if name in ("geometry", "image", "occupancy_grid", "point_cloud2"):
         return import_module(f"ros_numpy.{name}")
     raise AttributeError(name)

@@ -26,7 +26,7 @@ __all__ = [
 
 
 class Compression:
-    """Names of the compressions of bags."""
+    """The names of bag compressions."""
 
     NONE, BZ2, LZ4 = "none", "bz2", "lz4"
 
@@ -44,7 +44,7 @@ class ROSBagUnindexedException(ROSBagException):
 
 
 class BagMessage(NamedTuple):
-    """A message of a bag."""
+    """A message in a bag."""
 
     topic: str
     message: Any
@@ -52,7 +52,7 @@ class BagMessage(NamedTuple):
 
 
 class TopicTuple(NamedTuple):
-    """Type, message count and connections of a topic in a bag."""
+    """A topic in a bag: type, number of messages and of connections."""
 
     msg_type: str
     message_count: int
@@ -61,14 +61,14 @@ class TopicTuple(NamedTuple):
 
 
 class TypesAndTopicsTuple(NamedTuple):
-    """The types of a bag with their checksums, and its topics."""
+    """The types in a bag with their checksums, and its topics."""
 
     msg_types: dict[str, str]
     topics: dict[str, TopicTuple]
 
 
 class Bag:
-    """A bag opened for reading (`r`) or writing (`w`). Raise ROSBagException for a file that cannot be read."""
+    """A bag opened for reading (`r`) or writing (`w`). Raise ROSBagException if it cannot be read."""
 
     def __init__(self, f: Any, mode: str = "r", compression: str = "none", **_: Any) -> None:  # noqa: ARG002
         if not isinstance(f, str | Path):
@@ -82,7 +82,7 @@ class Bag:
 
     @property
     def filename(self) -> str:
-        """Return the path that the constructor got."""
+        """Return the path given to the constructor."""
         return str(self._path)
 
     @property
@@ -117,9 +117,9 @@ class Bag:
         raw: bool = False,
         return_connection_header: bool = False,
     ) -> Iterator[BagMessage]:
-        """Yield topic, message and time in order of time; optionally only some topics, within inclusive limits.
+        """Yield topic, message and time in order of time, optionally of some topics and within inclusive limits.
 
-        Raise UnsupportedApiError for filters of connections and for connection headers.
+        Raise UnsupportedApiError for connection filters and connection headers.
         """
         if connection_filter is not None or return_connection_header:
             raise unsupported("read_messages(connection_filter=…, return_connection_header=True)")
@@ -139,7 +139,7 @@ class Bag:
             yield BagMessage(connection.topic, message, stamp)
 
     def write(self, topic: str, msg: Any, t: Any = None, raw: bool = False, **_: Any) -> None:
-        """Write a message with the time `t` (default: the current time). Raise UnsupportedApiError for `raw`."""
+        """Write a message at time `t` (default: now). Raise UnsupportedApiError for `raw`."""
         if raw:
             raise unsupported("rosbag.Bag.write(raw=True)")
         from pytest_tarl.ros.rospy.timing import Time as RospyTime
@@ -153,14 +153,14 @@ class Bag:
         bag.write(self._connections[key], stamp.to_nsec(), serialize(msg))
 
     def flush(self) -> None:
-        """Do nothing: the file is complete when the bag is closed."""
+        """Do nothing: the file is complete once the bag is closed."""
 
     def get_start_time(self) -> float:
-        """Return the time of the first message, in seconds."""
+        """Return the time of the first message in seconds."""
         return float(self._open().start_time / 1e9)
 
     def get_end_time(self) -> float:
-        """Return the time of the last message, in seconds."""
+        """Return the time of the last message in seconds."""
         return float((self._open().end_time - 1) / 1e9)
 
     def get_message_count(self, topic_filters: Any = None) -> int:
@@ -188,7 +188,7 @@ class Bag:
         return self._bag
 
     def _class(self, connection: Any) -> Any:
-        """Return a connection's message class: the known one if its checksum matches, else one built from the bag."""
+        """Return a connection's message class: the known one if checksums match, otherwise one built from the bag."""
         name = connection.msgtype.replace("/msg/", "/")
         if name not in self._classes:
             known = find_class("ros1", *name.split("/"))

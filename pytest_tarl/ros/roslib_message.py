@@ -66,7 +66,7 @@ def get_printable_message_args(msg: Any, buff: Any = None, prefix: str = "") -> 
 def fill_message_args(msg: Any, msg_args: Any, keys: Mapping[str, Any] | None = None) -> None:
     """Fill a message from a dict of fields, or from a list with one value for each field.
 
-    `keys` maps names such as `now` to time values. Raise MessageException for values that do not fit.
+    `keys` maps names such as `now` to times. Raise MessageException for values that do not fit.
     """
     if len(msg_args) == 1 and isinstance(msg_args[0], dict | list) and not isinstance(msg_args, dict):
         msg_args = msg_args[0]

@@ -1,7 +1,7 @@
 """Schedule tasks, which are greenlets, on a virtual clock.
 
-All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another task
-directly. It only requests this (`wake`, `later`) and continues until it waits itself. The order of execution is
+All tasks are resumed from one place: the greenlet that called into the episode. A task never resumes another task
+directly; it only requests this (`wake`, `later`) and continues until it waits itself. The order of execution is
 therefore deterministic.
 """
 
@@ -14,7 +14,7 @@ from functools import partial
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
-try:  # the C part of asyncio, which is faster to import than all of asyncio
+try:  # the C part of asyncio, which is faster to import than asyncio
     from _asyncio import _get_running_loop, _set_running_loop
 except ImportError:
     from asyncio import _get_running_loop, _set_running_loop
@@ -25,11 +25,11 @@ from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
 NO_HOOKS: tuple[Any, ...] = (None, None)
-PATIENCE = 500  # number of polls at one instant that make a task a polling task, see polling.py
+PATIENCE = 500  # a task that polls this often without time passing counts as polling (see polling.py)
 
 
 class Program(Protocol):
-    """The interface of a task's process that the scheduler needs; see `Process`."""
+    """What the scheduler needs from a task's process (see `Process`)."""
 
     label: str
     tasks: list[Task]
@@ -37,7 +37,7 @@ class Program(Protocol):
 
     @property
     def scheduler(self) -> Scheduler:
-        """The scheduler that runs its tasks."""
+        """Return the scheduler that runs its tasks."""
 
     def failed(self, task: Task, error: BaseException) -> None:
         """Handle the exception that ended a task."""
@@ -53,7 +53,7 @@ class Program(Protocol):
 
 
 class Task:
-    """One thread of control of a process: its main program, a running callback, or a timer."""
+    """A thread of control of a process: its main program, a running callback, or a timer."""
 
     __slots__ = (
         "args",
@@ -72,17 +72,17 @@ class Task:
         self.process = process
         self.function = function
         self.args = args
-        self.ticket = 0  # increases at every resumption; heap entries with an older number are stale
+        self.ticket = 0  # increases with every resumption; heap entries with a lower number are stale
         self.parked = False
-        self.patience = PATIENCE  # number of polls left until the task must wait
+        self.patience = PATIENCE  # number of polls until the task must wait
         self.done = False
         self.loop: Any = None  # asyncio's running loop while the task waits inside it
-        # the hooks that asyncio sets for asynchronous generators while its loop runs, one pair per thread
+        # asyncio's hooks for asynchronous generators while its loop runs; there is one pair per thread
         self.asyncgen_hooks: tuple[Any, ...] = NO_HOOKS
         self.worker: Worker | None = None
 
     def execute(self) -> None:
-        """Run the task's function; pass any exception to its process."""
+        """Run the task's function; pass an exception to its process."""
         try:
             self.function(*self.args)
         except GreenletExit:
@@ -95,7 +95,7 @@ class Task:
 
 
 class Worker(greenlet):
-    """A greenlet that runs tasks one after another, because creating one costs ten times as much as a switch."""
+    """A greenlet that runs tasks one after another: creating one costs ten times as much as a switch."""
 
     def __init__(self, idle: list[Worker]) -> None:
         super().__init__()
@@ -112,7 +112,7 @@ class Worker(greenlet):
 
 
 def hand_over() -> Any:
-    """Switch to the greenlet that resumed the running one; return the value passed at the next resumption.
+    """Switch to the greenlet that resumed this one; return the value passed at the next resumption.
 
     Raise RuntimeError outside tasks.
     """
@@ -137,7 +137,7 @@ def current_task() -> Task:
 
 
 class Scheduler:
-    """The virtual clock (`time`, ns), tasks that wait for an instant, and tasks that are ready."""
+    """The virtual clock (`time`, ns), tasks that wait for a time, and tasks that are ready."""
 
     def __init__(self) -> None:
         self.time = 0
@@ -153,7 +153,7 @@ class Scheduler:
         self.entering: Callable[[Program], None] | None = None  # called before a task of a program is resumed
 
     def wait(self, until: int | None = None) -> bool:
-        """Suspend the running task until the instant `until` or until woken; return whether it was woken.
+        """Suspend the running task until the time `until`, or until it is woken; return whether it was woken.
 
         Raise RuntimeError outside tasks.
         """
@@ -170,21 +170,21 @@ class Scheduler:
         return bool(worker.parent.switch())
 
     def yield_now(self) -> None:
-        """Let all ready tasks run, then continue at the same instant."""
+        """Let all ready tasks run, then continue, without time passing."""
         task = current_task()
         task.parked = True
         self.wake(task)
         hand_over()
 
     def wake(self, task: Task) -> None:
-        """Make a waiting task ready; it resumes as soon as the running one waits."""
+        """Make a waiting task ready; it resumes when the running task waits."""
         if task.parked:
             task.parked = False
             task.ticket += 1
             self._ready.append(partial(self._resume, task, True))
 
     def spawn(self, process: Program, function: Callable[..., Any], *args: Any) -> Task:
-        """Start a task: at once if called outside tasks, else as soon as the running task waits."""
+        """Start a task: at once if called outside tasks, otherwise when the running task waits."""
         task = Task(process, function, args)
         process.tasks.append(task)
         if running_task() is not None:
@@ -194,22 +194,22 @@ class Scheduler:
         return task
 
     def later(self, job: Callable[[], None]) -> None:
-        """Call a function outside tasks, as soon as the running task waits."""
+        """Call a function outside tasks, when the running task waits."""
         self._ready.append(job)
 
     def at(self, instant: int, job: Callable[[], None]) -> None:
-        """Call a function outside tasks at a virtual time (ns), before the tasks that wake at this time."""
+        """Call a function outside tasks at a virtual time (ns), before the tasks that wake at that time."""
         self._sequence += 1
         heappush(self._alarms, (instant, self._sequence, job))
 
     def settle(self) -> None:
-        """Run until no task is ready at the current instant."""
+        """Run until no task is ready at the current time."""
         ready = self._ready
         while ready and self.failure is None:
             ready.popleft()()
 
     def advance(self, until: int) -> None:
-        """Move the clock to `until` (ns); run tasks and alarms that fall due, in order of their instants."""
+        """Advance the clock to `until` (ns); run the tasks and alarms that become due, in order of time."""
         alarms = self._alarms
         self._run_tasks(until)
         while alarms and alarms[0][0] <= until and self.failure is None:
@@ -221,7 +221,7 @@ class Scheduler:
             self.time = max(self.time, until)
 
     def _run_tasks(self, until: int) -> None:
-        """Run the tasks that are due up to `until` and before the next alarm; the tasks may set an earlier alarm."""
+        """Run the tasks due by `until` and before the next alarm; they may set an earlier alarm."""
         if self._ready:
             self.settle()
         sleeping, alarms = self._sleeping, self._alarms
@@ -240,11 +240,11 @@ class Scheduler:
                 self.settle()
 
     def kill(self, task: Task) -> None:
-        """Kill a task at the place where it waits."""
+        """Kill a task where it waits."""
         task.ticket += 1
         if task.worker is None:
             task.done = True
-            # the task was never started, so there is no stack to unwind
+            # never started, so there is no stack to unwind
             task.process.finished(task)
         elif not task.done:
             task.worker.parent = getcurrent()
@@ -265,12 +265,12 @@ class Scheduler:
         return task.process.spins(blame.of_frame(task.worker.gr_frame))
 
     def interrupt(self, task: Task, error: BaseException) -> None:
-        """Raise an exception at the place where a task waits. Call this outside tasks."""
+        """Raise an exception where a task waits. Call this outside tasks."""
         if task.parked:
             task.parked = False
             task.ticket += 1
             self._resume(task, True, error)
-        elif not task.done:  # ready to run: it waits again after it has run
+        elif not task.done:  # ready: it will wait again after it has run
             self.later(partial(self.interrupt, task, error))
 
     def _resume(self, task: Task, woken: bool, error: BaseException | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Check the types of services, requests and responses; both ROS generations have classes for each type."""
+"""Check the types of services, requests and responses; each type has a class in both ROS generations."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ _PART = re.compile(r"_?(Request|Response)$")
 
 
 def request_class(service_class: Any) -> Any:
-    """Return a service's request class, for either ROS generation."""
+    """Return a service's request class, in either ROS generation."""
     return getattr(service_class, "Request", None) or service_class._request_class
 
 
 def response_class(service_class: Any) -> Any:
-    """Return a service's response class, for either ROS generation."""
+    """Return a service's response class, in either ROS generation."""
     return getattr(service_class, "Response", None) or service_class._response_class
 
 
 def service_type(service_class: Any) -> str:
-    """Return a service's type, `std_srvs/SetBool`, in the same form for both ROS generations."""
+    """Return a service's type, such as `std_srvs/SetBool`, in the same form for both ROS generations."""
     return _PART.sub("", type_name(request_class(service_class)))
 
 
@@ -44,9 +44,9 @@ def require_service(service: str, service_class: Any, handler: Callable[[Any], A
 
 
 def require_part(message: Any, wanted: type, what: str) -> None:
-    """Raise RecordingError unless a message is of type `wanted`, in the class of either ROS generation.
+    """Raise RecordingError unless a message is of type `wanted`, in either ROS generation.
 
-    `what` is the beginning of the sentence, such as "The request to /dock".
+    `what` starts the sentence, as in "The request to /dock".
     """
     if isinstance(message, wanted):
         return
@@ -62,7 +62,7 @@ def _plain(part: Any) -> str:
 
 
 def _constructor(part: Any) -> str:
-    """Return the expression that names a request or response class in a test."""
+    """Return the expression for a request or response class in a test."""
     package, _, name = type_name(part).partition("/")
     short, half = _PART.sub("", name), "Request" if name.endswith("Request") else "Response"
     if hasattr(part, "_slot_types"):

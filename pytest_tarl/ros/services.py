@@ -1,4 +1,4 @@
-"""The services of an episode, for both client libraries and for the world."""
+"""The services of an episode, for both client libraries and the world."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ from pytest_tarl.ros.service_types import (
     service_type,
 )
 
-Answer = Callable[[Any], None]  # a function that gets the response, or a Refusal if the handler failed
+Answer = Callable[[Any], None]  # receives the response, or a Refusal if the handler failed
 NO_RESPONSE = "service cannot process request: service handler returned None"
 
 
 class Refusal:
-    """Takes the place of the response if the handler of a ROS 1 service failed or returned None."""
+    """Replaces the response if a ROS 1 service's handler failed or returned None."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
 
 
 class Endpoint(Protocol):
-    """The server end of a service."""
+    """The serving end of a service."""
 
     request_type: type
     service_class: Any
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Handle a request; `answer` is called with the response when there is one."""
+        """Handle a request; `answer` is called with the response once it is available."""
 
 
 class ServiceDirectory:
-    """The services of one episode. An offered service is created only when it is first requested."""
+    """The services of an episode. An offered service is created only when first requested."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
         self._endpoints: dict[str, Endpoint] = {}
         self._offers: dict[str, Callable[[], Any]] = {}
         self._waiting: list[Task] = []
-        self.requests = 0  # number of requests of nodes to services that exist
+        self.requests = 0  # number of requests from nodes to existing services
 
     def __contains__(self, name: str) -> bool:
         return name in self._endpoints or name in self._offers
@@ -54,14 +54,13 @@ class ServiceDirectory:
     def find(self, name: str) -> Endpoint | None:
         """Return the endpoint of a service, or None if there is none."""
         if name not in self._endpoints and name in self._offers:
-            self._offers[name]()  # this call adds the endpoint
+            self._offers[name]()  # this adds the endpoint
         return self._endpoints.get(name)
 
     def find_as(self, name: str, service_class: Any, caller: str) -> Endpoint | None:
         """Return a service's endpoint for a calling node, or None.
 
-        If the endpoint has another type, the test fails with an error: on a robot, the server and `caller` would not
-        connect.
+        If the endpoint has another type, the test fails, because on a robot, server and `caller` would not connect.
         """
         endpoint = self.find(name)
         if endpoint is None or service_type(endpoint.service_class) == service_type(service_class):
@@ -74,18 +73,18 @@ class ServiceDirectory:
         return None
 
     def add(self, name: str, endpoint: Endpoint) -> None:
-        """Add a service and wake the tasks that wait for it."""
+        """Add a service, and wake the tasks that wait for it."""
         self._endpoints[name] = endpoint
         for task in self._waiting:
             self._scheduler.wake(task)
 
     def offer(self, names: Iterable[str], make: Callable[[], Any]) -> None:
-        """Register `make`, which creates services; it is called when one of `names` is first requested."""
+        """Register `make`, which creates services when one of `names` is first requested."""
         for name in names:
             self._offers[name] = make
 
     def remove(self, name: str, endpoint: Endpoint) -> None:
-        """Remove a service unless another service has taken its name."""
+        """Remove a service, unless another one has taken its name."""
         if self._endpoints.get(name) is endpoint:
             del self._endpoints[name]
 
@@ -95,11 +94,11 @@ class ServiceDirectory:
             self._offers.pop(name, None)
 
     def names(self) -> list[tuple[str, Any]]:
-        """Return the service classes by name."""
+        """Return the services as (name, service class)."""
         return [(name, endpoint.service_class) for name, endpoint in self._endpoints.items()]
 
     def wait(self, task: Task, name: str, until: int | None, going_on: Callable[[], bool]) -> bool:
-        """Wait in `task` until `name` is served; return whether it is served in time."""
+        """Wait in `task` until `name` is served; return whether this was in time."""
         clock = self._scheduler
         self._waiting.append(task)
         try:
@@ -119,7 +118,7 @@ class ServiceDirectory:
         self.add(resolved, WorldService(resolved, self._scheduler, service_class, handler))
 
     def call(self, name: str, request: Any) -> Reply | None:
-        """Call a node's service from the world. Return None if no node offers it.
+        """Call a node's service from the world; return None if no node offers it.
 
         Raise RecordingError for a request of another type.
         """
@@ -138,7 +137,7 @@ class ServiceDirectory:
 
 
 class Reply:
-    """The result of a call from the world. `error` is the reason if a ROS 1 node refused the request."""
+    """The result of a call from the world; `error` is the reason if a ROS 1 node refused the request."""
 
     def __init__(self, service: str) -> None:
         self._service = service
@@ -148,13 +147,13 @@ class Reply:
 
     @property
     def response(self) -> Any:
-        """Return the response, or None until the node has answered. Raise RecordingError if the node refused."""
+        """Return the response; None until the node has answered. Raise RecordingError if it refused."""
         if self.error:
             raise RecordingError(f"{self._service} gave no response: {self.error}.")
         return self._response
 
     def take(self, response: Any) -> None:
-        """Store the response, or the reason why there is no response."""
+        """Store the response, or the reason why there is none."""
         if isinstance(response, Refusal):
             self.error = response.reason
         else:
@@ -163,7 +162,7 @@ class Reply:
 
 
 class WorldService:
-    """A service that the simulated world answers without delay."""
+    """A service that the simulated world answers immediately."""
 
     def __init__(
         self, name: str, scheduler: Scheduler, service_class: Any, handler: Callable[[Any], Any]
@@ -175,7 +174,7 @@ class WorldService:
         self._handler = handler
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Call the world's handler; its errors are raised in the test, not in the node."""
+        """Call the world's handler; errors are raised in the test, not in the node."""
         try:
             response = self._checked(self._handler(request))
             answer(Refusal(NO_RESPONSE) if response is None else response)
@@ -195,5 +194,5 @@ class WorldService:
 
 
 def adapted(message: Any, wanted: type) -> Any:
-    """Copy a request or response into the class that the other side uses."""
+    """Copy a request or response into the class used by the other side."""
     return snapshot(message) if isinstance(message, wanted) else translate(message, wanted)

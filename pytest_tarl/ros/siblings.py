@@ -14,7 +14,7 @@ from tarl_lint.workspace.cfg_files import Configuration, configurations
 
 
 def sibling(root: str) -> ModuleSpec | None:
-    """Find a top-level module that a workspace package installs, or return None if no package installs it."""
+    """Find a top-level module that a workspace package installs, or return None."""
     for package in packages().values():
         for module in package.modules:
             if module.name == root:
@@ -37,7 +37,7 @@ def is_generated(name: str) -> bool:
 def generated(name: str) -> ModuleType:
     """Create the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file.
 
-    Raise UnsupportedModuleError without this file.
+    Raise UnsupportedModuleError if there is no such file.
     """
     package, _, rest = name.partition(".")
     module = ModuleType(name, f"Generated from the .cfg files of {package}.")
@@ -62,7 +62,7 @@ def _of_package(files: tuple[Path, ...]) -> Mapping[str, Configuration]:
 
 
 def _fill(module: ModuleType, found: Configuration) -> None:
-    """Define in a module the names that dynamic_reconfigure's template for generated modules defines."""
+    """Define in a module the names that dynamic_reconfigure's template defines."""
     names = module.__dict__
     names.update(inf=float("inf"), config_description=found.description, all_level=0, **found.constants)
     names.update({name: {} for name in ("min", "max", "defaults", "level", "type")})

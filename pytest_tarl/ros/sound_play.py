@@ -15,7 +15,7 @@ _STOP, _ONCE, _LOOP = 0, 1, 2  # SoundRequest.command
 
 
 class Sound:
-    """One sound of a client."""
+    """A sound of a client."""
 
     def __init__(self, client: SoundClient, snd: int, arg: str, arg2: str = "", volume: float = 1.0) -> None:
         self._request = (client, snd, arg, arg2, volume)
@@ -25,7 +25,7 @@ class Sound:
         self._send(_ONCE, **kwargs)
 
     def repeat(self, **kwargs: Any) -> None:
-        """Ask the server to play the sound until it is stopped."""
+        """Ask the server to repeat the sound until it is stopped."""
         self._send(_LOOP, **kwargs)
 
     def stop(self) -> None:
@@ -52,7 +52,7 @@ class SoundClient:
     def sendMsg(  # noqa: N802 (the library's name)
         self, snd: int, cmd: int, s: str, arg2: str = "", vol: float = 1.0, **kwargs: Any
     ) -> None:
-        """Send one request. `blocking` and `replace` are accepted as keywords, as in the library."""
+        """Send a request. As in the library, `blocking` and `replace` are accepted as keywords."""
         message: Any = class_of("ros1", "sound_play/SoundRequest")()
         message.sound, message.command = snd, cmd
         message.volume = float(min(max(vol, 0.0), 1.0))

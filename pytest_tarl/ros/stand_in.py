@@ -1,4 +1,4 @@
-"""Let a function of the test replace a node of a launch file; the function uses the node's topic and service names."""
+"""Replace a node of a launch file by a function of the test, which uses the node's topic and service names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class StandIn:
-    """The interface of a function that replaces a node. Names are those in the node's code, before remapping."""
+    """The interface for a function that replaces a node. Names are those in the node's code, before remapping."""
 
     def __init__(self, ros: Ros, launched: Launched) -> None:
         self.name = launched.name
@@ -27,11 +27,11 @@ class StandIn:
         ros.processes.append(self._process)
 
     def resolve(self, name: str) -> str:
-        """Return the full name of a topic or service after the launch file's namespace and remappings."""
+        """Return the full name of a topic or service, after the launch file's namespace and remappings."""
         return self._launched.resolve(name)
 
     def parameter(self, name: str, default: Any = None) -> Any:
-        """Return a parameter that the launch file gives the node, or else the default."""
+        """Return a parameter that the launch file gives the node, or the default."""
         given = self._launched.given
         return given.private.get(name, given.shared.get(self.resolve(name), default))
 
@@ -40,21 +40,21 @@ class StandIn:
         self._ros.bus.publish(self.resolve(topic), message, latch=latch)
 
     def subscribe(self, topic: str, callback: Callable[[Any], None]) -> None:
-        """Call the callback with every message that a node publishes on the topic."""
+        """Call the callback with every message published by a node on the topic."""
         self._ros.bus.subscribe(self.resolve(topic), callback)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message that a node published on the topic, or None before the first one."""
+        """Return the newest message published by a node on the topic, or None before the first one."""
         return self._ros.bus.latest(self.resolve(topic))
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
-        """Serve a service; `handler(request)` returns the response (in-process ROS only)."""
+        """Serve a service (in-process ROS only); `handler(request)` returns the response."""
         self._ros.bus.serve(self.resolve(service), service_type, handler)
 
     def every(self, seconds: float, function: Callable[[], object]) -> None:
-        """Call the function at the beginning of the next step, and then every `period` seconds of virtual time.
+        """Call the function at the start of the next step, and then every `seconds` of virtual time.
 
-        Raise SettingsError for a period that is not positive.
+        Raise SettingsError unless the period is positive.
         """
         if not 0 < seconds < math.inf:
             raise SettingsError(f"{self.name}: every({seconds!r}, …) needs a positive number of seconds.")

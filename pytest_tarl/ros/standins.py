@@ -1,4 +1,4 @@
-"""The ROS modules that nodes may import: those with a stand-in, and those that are known but have none."""
+"""The ROS modules that nodes may import: those with a stand-in, and known ones without."""
 
 from __future__ import annotations
 
@@ -196,4 +196,4 @@ STANDALONE = (
     "urdf_parser_py",
     "angles",
     "PyKDL",
-)  # if installed, the real package takes precedence, because it works without a running ROS
+)  # real packages that take precedence if installed, because they work without a running ROS

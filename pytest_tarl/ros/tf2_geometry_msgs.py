@@ -45,7 +45,7 @@ def do_transform_point(point: Any, transform: Any) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """Return a Vector3Stamped in the transform's frame: rotated, not translated."""
+    """Return a Vector3Stamped in the transform's frame, rotated but not translated."""
     moved = _in_frame(vector3, transform)
     _set(
         moved.vector,
@@ -71,7 +71,7 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
 
 
 def transform_covariance(cov_in: Any, transform: Any) -> Any:
-    """Return the 36 values of a covariance of poses, rotated: an array for an array, else a list."""
+    """Return the 36 values of a pose covariance, rotated: an array for an array, otherwise a list."""
     import numpy as np
 
     rotation = _rigid(transform).rotation
@@ -82,7 +82,7 @@ def transform_covariance(cov_in: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """Return a PoseWithCovarianceStamped in the transform's frame; the covariance is rotated too."""
+    """Return a PoseWithCovarianceStamped in the transform's frame, including its covariance."""
     moved = _in_frame(pose, transform)
     _move_pose(moved.pose.pose, _rigid(transform))
     moved.pose.covariance = transform_covariance(pose.pose.covariance, transform)
@@ -98,7 +98,7 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
 
 
 def do_transform_wrench(wrench: Any, transform: Any) -> Any:
-    """Return a WrenchStamped in the transform's frame: rotated, not translated."""
+    """Return a WrenchStamped in the transform's frame, rotated but not translated."""
     moved = _in_frame(wrench, transform)
     for part in (moved.wrench.force, moved.wrench.torque):
         _set(part, rotate(_rigid(transform).rotation, (part.x, part.y, part.z)))
@@ -126,7 +126,7 @@ TRANSFORMERS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a stamped message class, which the library exposes; raise for a name that the stand-in lacks."""
+    """Return a stamped message class that the library exposes; raise for a name that the stand-in lacks."""
     if name in TRANSFORMERS:
         from pytest_tarl.ros.install import kind_of_caller
         from pytest_tarl.ros.messages import class_of

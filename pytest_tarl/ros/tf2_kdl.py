@@ -1,4 +1,4 @@
-"""Stand-in for `tf2_kdl`: transform values of PyKDL by a TransformStamped; `Stamped` values are missing."""
+"""Stand-in for `tf2_kdl`: transform PyKDL's values by a TransformStamped, without `Stamped` values."""
 
 from __future__ import annotations
 

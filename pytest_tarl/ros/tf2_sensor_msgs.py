@@ -13,7 +13,7 @@ __all__ = ["do_transform_cloud"]
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
     """Return the cloud in the transform's frame.
 
-    The first three fields of the cloud are x, y and z; the others are unchanged.
+    The first three fields of the cloud are x, y and z; the others stay unchanged.
     """
     move, turn = transform.transform.translation, transform.transform.rotation
     rigid = Rigid((move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w))

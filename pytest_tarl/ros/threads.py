@@ -1,4 +1,4 @@
-"""Run a node's threads as tasks, and make its locks suspend tasks, so that execution is deterministic."""
+"""Run a node's threads as tasks, and let its locks suspend tasks, so that execution is deterministic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
-_OWN = str(Path(__file__).parents[1])  # threads started by this package remain real threads
+_OWN = str(Path(__file__).parents[1])  # threads started by this package stay real
 _STDLIB = str(Path(threading.__file__).parent)
 _PASSED_THROUGH = (
     threading.__file__,
@@ -30,12 +30,12 @@ _PASSED_THROUGH = (
 
 @contextmanager
 def threads_as_tasks() -> Iterator[None]:
-    """Replace the threads and locks of `threading` while nodes run; code outside nodes gets the real ones."""
+    """Replace the threads and locks of `threading` while nodes run; other code gets the real ones."""
     replaced = [
         (threading, "Lock", _instead(threading.Lock, Lock)),
         (threading, "RLock", _instead(threading.RLock, ReentrantLock)),
-        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # Condition.wait calls it
-        (queue, "SimpleQueue", _simple_queue(queue.SimpleQueue)),  # concurrent.futures uses it
+        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # called by Condition.wait
+        (queue, "SimpleQueue", _simple_queue(queue.SimpleQueue)),  # used by concurrent.futures
         (threading.Thread, "start", _start(threading.Thread.start)),
         (threading.Thread, "join", _join(threading.Thread.join)),
         (threading.Thread, "is_alive", _is_alive(threading.Thread.is_alive)),
@@ -52,7 +52,7 @@ def threads_as_tasks() -> Iterator[None]:
 
 
 def _forget_pools() -> None:
-    """Remove threads that run as tasks from those that concurrent.futures joins at the end of the program."""
+    """Remove threads that run as tasks from those that concurrent.futures joins when Python exits."""
     pools: Any = sys.modules.get("concurrent.futures.thread")
     if pools is None:
         return
@@ -69,7 +69,7 @@ class Lock:
         self._waiting: deque[Task] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock; return whether that succeeded. Raise RuntimeError if the test itself would deadlock."""
+        """Acquire the lock; return whether this succeeded. Raise RuntimeError if the test itself would deadlock."""
         clock = self._scheduler
         until = clock.time + nanoseconds(timeout) if timeout >= 0 else None
         while self._held:
@@ -91,7 +91,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Release the lock; wake the task that has waited longest. Raise RuntimeError if the lock is not held."""
+        """Release the lock; wake the longest-waiting task. Raise RuntimeError if the lock is not held."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
@@ -114,11 +114,11 @@ class ReentrantLock(Lock):
 
     def __init__(self, scheduler: Scheduler) -> None:
         super().__init__(scheduler)
-        self._owner: Task | None = None  # the last holder; meaningful only while the lock is held
+        self._owner: Task | None = None  # last holder, meaningful only while the lock is held
         self._count = 0
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock, again if the running task already holds it."""
+        """Acquire the lock, even if the running task already holds it."""
         if not (self._held and self._owner is running_task()):
             if not super().acquire(blocking, timeout):
                 return False
@@ -137,7 +137,7 @@ class ReentrantLock(Lock):
         if self._count == 0:
             super().release()
 
-    def _is_owned(self) -> bool:  # interface of threading.Condition
+    def _is_owned(self) -> bool:  # part of threading.Condition's interface
         return self._held and self._owner is running_task()
 
     def _release_save(self) -> int:
@@ -159,7 +159,7 @@ def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Calla
 
 
 def _simple_queue(real: Callable[[], Any]) -> Callable[[], Any]:
-    """Return a function that gives nodes the Python implementation of queues, whose locks suspend tasks."""
+    """Return a function that gives nodes Python's own implementation of queues, whose locks suspend tasks."""
 
     def make() -> Any:
         return queue._PySimpleQueue() if running_task() is not None and _asked_by_node() else real()  # type: ignore[attr-defined]
@@ -168,9 +168,9 @@ def _simple_queue(real: Callable[[], Any]) -> Callable[[], Any]:
 
 
 def _asked_by_node() -> bool:
-    """Return whether the caller is a node's own code or the start of one of its threads.
+    """Return whether the caller is a node's own code, or starts one of its threads.
 
-    Locks of a library that is being imported outlive the episode.
+    Locks that a library creates while it is imported outlive the episode.
     """
     frame: FrameType | None = sys._getframe(2)
     while frame is not None and frame.f_code.co_filename.startswith(_PASSED_THROUGH):

@@ -22,8 +22,8 @@ class _Subscribing(type):
 class LazyTransport(SubscribeListener, metaclass=_Subscribing):
     """A node that processes topics on demand: `advertise`, `subscribe` and `unsubscribe`.
 
-    By default, it subscribes when its first peer subscribes. The simulated world is a peer of every topic, so the node
-    subscribes as soon as it advertises a topic.
+    By default, it subscribes when its first peer does. The simulated world is a peer of every topic, so the node
+    subscribes as soon as it advertises one.
     """
 
     def __init__(self) -> None:
@@ -39,19 +39,19 @@ class LazyTransport(SubscribeListener, metaclass=_Subscribing):
         raise NotImplementedError("Please overwrite this method")
 
     def advertise(self, *args: Any, **kwds: Any) -> Publisher:
-        """Create a publisher whose peers decide whether the node subscribes."""
+        """Create a publisher; whether it has peers decides whether the node subscribes."""
         publisher = Publisher(*args, **{**kwds, "subscriber_listener": self})
         self._publishers.append(publisher)
         return publisher
 
     def peer_subscribe(self, *_: Any, **__: Any) -> None:
-        """Subscribe unless the node already has."""
+        """Subscribe, unless the node already has."""
         if not self._connection_status:
             self.subscribe()
             self._connection_status = True
 
     def peer_unsubscribe(self, *_: Any, **__: Any) -> None:
-        """Unsubscribe if no publisher has a peer."""
+        """Unsubscribe once no publisher has a peer."""
         if not get_param("~lazy", True) or not self._connection_status:
             return
         if all(publisher.get_num_connections() == 0 for publisher in self._publishers):

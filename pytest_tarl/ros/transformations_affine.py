@@ -1,6 +1,7 @@
 """Affine part of `tf.transformations`: reflection, scaling, shear, projection, decomposition of 4×4 matrices.
 
-A 4×4 matrix is composed as P · T · R · Z · S: perspective, translation, rotation, shear, scale; applied from the right.
+A 4×4 matrix is composed as P · T · R · Z · S (perspective, translation, rotation, shear, scale), applied from right to
+left.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ Numbers = Sequence[float]
 
 
 def reflection_matrix(point: Numbers, normal: Numbers) -> Any:
-    """Return the 4×4 matrix of a reflection in the plane through a point with that normal."""
+    """Return the 4×4 matrix of a reflection in the plane through a point with this normal."""
     import numpy as np
 
     direction = plain.unit_vector(list(normal)[:3])
@@ -66,7 +67,7 @@ def scale_matrix(factor: float, origin: Numbers | None = None, direction: Number
 
 
 def scale_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Return factor, origin and direction (None if uniform)."""
+    """Return factor, origin and direction, which is None if the scaling is uniform."""
     import numpy as np
 
     part = np.asarray(matrix, float)[:3, :3]
@@ -88,7 +89,7 @@ def projection_matrix(
     perspective: Numbers | None = None,
     pseudo: bool = False,
 ) -> Any:
-    """Return the 4×4 matrix of a projection onto a plane: along its normal or a direction, or from a viewpoint."""
+    """Return the 4×4 matrix of a projection onto a plane: along its normal, along a direction, or from a viewpoint."""
     import numpy as np
 
     centre, axis = np.asarray(point, float)[:3], plain.unit_vector(list(normal)[:3])
@@ -137,7 +138,7 @@ def clip_matrix(
 
 
 def shear_matrix(angle: float, direction: Numbers, point: Numbers, normal: Numbers) -> Any:
-    """Return the 4×4 matrix of a shear by an angle, in radians, along a direction in a plane through a point.
+    """Return the 4×4 matrix of a shear by an angle (radians), along a direction in a plane through a point.
 
     Raise ValueError if direction and normal are not orthogonal.
     """
@@ -172,7 +173,7 @@ def decompose_matrix(matrix: Any) -> tuple[Any, list[float], tuple[float, float,
     scale, shear = (
         np.zeros(3),
         [0.0, 0.0, 0.0],
-    )  # Gram-Schmidt: the shear is the projection of a row on the others, the scale is the remaining length
+    )  # Gram-Schmidt: the shear is a row's projection on the others, the scale is the length left
     scale[0] = np.linalg.norm(rows[0])
     rows[0] /= scale[0]
     shear[0] = float(np.dot(rows[0], rows[1]))
@@ -200,7 +201,7 @@ def compose_matrix(
     translate: Numbers | None = None,
     perspective: Numbers | None = None,
 ) -> Any:
-    """Return the 4×4 matrix with these parts; the inverse of `decompose_matrix`."""
+    """Return the 4×4 matrix with these parts (the inverse of `decompose_matrix`)."""
     import numpy as np
 
     matrix = np.identity(4)
@@ -258,7 +259,7 @@ def random_vector(size: int) -> Any:
 
 
 def random_quaternion(rand: Numbers | None = None) -> Any:
-    """Return a uniform random rotation, or the one that three given numbers in [0, 1] determine (Shoemake 1992)."""
+    """Return a uniform random rotation, or the one given by three numbers in [0, 1] (Shoemake 1992)."""
     import numpy as np
 
     one, two, three = random_vector(3) if rand is None else rand
@@ -283,7 +284,7 @@ def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
 
 
 def _eigenvector(matrix: Any, value: float, size: int) -> Any:
-    """Return the unit eigenvector of an eigenvalue; for a 4×4 matrix, scaled so that its last element is one.
+    """Return the unit eigenvector for an eigenvalue; for a 4×4 matrix, its last element is scaled to one.
 
     Raise ValueError if there is none.
     """

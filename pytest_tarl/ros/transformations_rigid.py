@@ -42,9 +42,8 @@ def euler_from_quaternion(quaternion: Numbers, axes: str = "sxyz") -> tuple[floa
 def euler_from_matrix(matrix: Any, axes: str = "sxyz") -> tuple[float, float, float]:
     """Return the three angles of a rotation matrix, in radians.
 
-    Rotations about fixed axes equal rotations about moving axes in the opposite order. With moving axes i, j, k the
-    matrix is R_i(a) R_j(b) R_k(c), whose entries give the angles. At gimbal lock (b at its limit), one angle is set
-    to zero.
+    Rotations about fixed axes equal rotations about moving axes in reverse order. With moving axes i, j, k, the matrix
+    is R_i(a) R_j(b) R_k(c), whose entries give the angles. At gimbal lock (b at its limit), one angle is set to zero.
     """
     letters = _letters(axes) if axes[0] == "r" else _letters(axes)[::-1]
     i, j, k = (_AXES.index(letter) for letter in letters)
@@ -62,7 +61,7 @@ def _three_axes(matrix: Any, i: int, j: int, k: int) -> tuple[float, float, floa
             second,
             math.atan2(-sign * matrix[i][j], matrix[i][i]),
         )
-    # gimbal lock fixes only the sum of first and last angle: assign it to the first (fixed axes)
+    # gimbal lock determines only the sum of the first and last angle: assign it to the first (fixed axes)
     return 0.0, second, math.atan2(sign * matrix[j][i], matrix[j][j])
 
 
@@ -113,9 +112,9 @@ def quaternion_inverse(quaternion: Numbers) -> Any:
 def quaternion_slerp(
     quat0: Numbers, quat1: Numbers, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Any:
-    """Interpolate between two rotations (slerp) at `fraction` from 0 to 1, along the shorter arc.
+    """Interpolate between two rotations (slerp), at `fraction` from 0 to 1 along the shorter arc.
 
-    Raise an error that names the missing feature if extra turns or the longer arc are wanted.
+    Extra turns and the longer arc are not supported and raise an error that says so.
     """
     if spin or not shortestpath:
         raise unsupported("tf.transformations.quaternion_slerp(spin=…, shortestpath=False)")
@@ -139,10 +138,10 @@ def quaternion_matrix(quaternion: Numbers) -> Any:
 def quaternion_from_matrix(matrix: Any) -> Any:
     """Return the quaternion of a rotation matrix.
 
-    As in tf, w is positive for rotations below 120°; for larger ones, the largest component is positive.
+    As in tf, w is positive for rotations below 120°; for larger ones, the largest component is.
     """
     m = matrix
-    squares = [  # 4x², 4y², 4z² and 4w² of the quaternion
+    squares = [  # the quaternion's 4x², 4y², 4z² and 4w²
         1 + m[0][0] - m[1][1] - m[2][2],
         1 - m[0][0] + m[1][1] - m[2][2],
         1 - m[0][0] - m[1][1] + m[2][2],
@@ -224,6 +223,6 @@ def _letters(axes: str) -> str:
 
 
 def _array(parts: Any) -> Any:
-    import numpy as np  # nodes expect arrays: they index, unpack and add the results
+    import numpy as np  # nodes expect arrays, because they index, unpack and add the results
 
     return np.array(parts, dtype=float)

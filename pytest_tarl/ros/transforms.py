@@ -1,4 +1,4 @@
-"""The tree of coordinate frames in a tf2 buffer: poses of frames over time, and transforms between any two."""
+"""The tree of coordinate frames in a tf2 buffer: frame poses over time, and transforms between any two frames."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class ConnectivityException(TransformException):
 
 
 class ExtrapolationException(TransformException):
-    """An instant lies outside the received transforms."""
+    """A time is outside the range of the received transforms."""
 
 
 class InvalidArgumentException(TransformException):
@@ -42,7 +42,7 @@ class Rigid:
     """A rotation followed by a translation."""
 
     translation: Vector = (0.0, 0.0, 0.0)
-    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)  # in the order x, y, z, w
+    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)  # x, y, z, w
 
     def __matmul__(self, inner: Rigid) -> Rigid:
         moved = rotate(self.rotation, inner.translation)
@@ -83,7 +83,7 @@ def rotate(turn: Quaternion, vector: Vector) -> Vector:
 
 
 def slerp(start: Quaternion, end: Quaternion, share: float) -> Quaternion:
-    """Interpolate between two unit quaternions (slerp) at `share` from 0 to 1, along the shorter arc."""
+    """Interpolate between two unit quaternions (slerp), at `share` from 0 to 1 along the shorter arc."""
     cosine = sum(a * b for a, b in zip(start, end, strict=True))
     if cosine < 0:
         cosine, end = -cosine, (-end[0], -end[1], -end[2], -end[3])
@@ -97,7 +97,7 @@ def slerp(start: Quaternion, end: Quaternion, share: float) -> Quaternion:
 
 @dataclass
 class Edge:
-    """The pose of a frame in its parent over time (ns), constant if static."""
+    """A frame's pose in its parent over time (ns); constant if static."""
 
     parent: str
     static: bool
@@ -105,9 +105,9 @@ class Edge:
     poses: dict[int, Rigid] = field(default_factory=dict)
 
     def at(self, time: int, child: str) -> Rigid:
-        """Return the interpolated pose at an instant (0: the latest).
+        """Return the interpolated pose at a time (0: the latest).
 
-        Raise ExtrapolationException outside the received data.
+        Raise ExtrapolationException if the time is outside the received data.
         """
         if self.static or time == 0:
             return self.poses[self.times[-1]]
@@ -163,10 +163,10 @@ class TransformTree:
             del edge.poses[edge.times.pop(0)]
 
     def look_up(self, target: str, source: str, time: int) -> tuple[Rigid, int]:
-        """Return the pose of `source` in `target`, and its instant (0 requests the latest common one).
+        """Return the pose of `source` in `target`, and its time (`time` 0 requests the latest common one).
 
         Raise LookupException for an unknown frame, ConnectivityException if the frames are in different trees, and
-        ExtrapolationException outside the received data.
+        ExtrapolationException if the time is outside the received data.
         """
         target, source = self._known(target), self._known(source)
         up, down = self._way_up(source), self._way_up(target)
@@ -213,5 +213,5 @@ class TransformTree:
 
 
 def clean(frame: str) -> str:
-    """Return a frame's name without tf1's leading slash."""
+    """Return a frame's name without the leading slash of tf1."""
     return frame.lstrip("/")

@@ -1,4 +1,4 @@
-"""Import workspace modules that no package installs, and warn that the import would fail on the robot."""
+"""Import workspace modules that no package installs, and warn that these imports would fail on the robot."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class UninstalledFinder:
         return PathFinder.find_spec(name, [str(place.parent)])
 
     def notes(self) -> tuple[str, ...]:
-        """Return sentences for the user about modules found this way."""
+        """Return sentences for the user about modules that were found this way."""
         return tuple(
             f"{name} was imported from {place}, which no package of the workspace installs: on the robot the import "
             "fails unless the folder is on PYTHONPATH. Name it in the setup.py of its package."
@@ -49,7 +49,7 @@ class UninstalledFinder:
 
 
 def _importer(frame: FrameType | None) -> FrameType | None:
-    """Return the importing frame if it runs a workspace file."""
+    """Return the importing frame, if it runs a workspace file."""
     while frame is not None and (
         "importlib" in frame.f_code.co_filename
         or frame.f_globals.get("__name__", "").startswith("pytest_tarl")
@@ -62,10 +62,10 @@ def _importer(frame: FrameType | None) -> FrameType | None:
 
 
 def _nearest(name: str, importer: Path) -> Path | None:
-    """Return the only module with that name in the package of the importer, or else in the workspace.
+    """Return the only module of this name in the importer's package or, if it has none, in the workspace.
 
-    If there are several, choose the one that is not inside another Python package, or else the one that a Python
-    project installs, provided that there is only one.
+    If there are several, prefer those outside any Python package, then those that a Python project installs. Return
+    None unless exactly one is left.
     """
     workspace = workspace_around(importer)
     if workspace is None:
@@ -80,12 +80,12 @@ def _nearest(name: str, importer: Path) -> Path | None:
 
 
 def _is_top_level(place: Path) -> bool:
-    """Return whether a module is in no Python package, so that `import NAME` can refer to it."""
+    """Return whether a module is outside any Python package, so that `import NAME` can find it."""
     return not (place.parent / "__init__.py").is_file()
 
 
 def _is_of_project(place: Path) -> bool:
-    """Return whether a Python project without `package.xml` installs a module."""
+    """Return whether a module is installed by a Python project without `package.xml`."""
     above = place.parent
     projects = (above, above.parent) if above.name == "src" else (above,)
     return any(
@@ -95,13 +95,13 @@ def _is_of_project(place: Path) -> bool:
 
 
 def candidates(name: str) -> tuple[Path, ...]:
-    """Return the files and folders of all workspaces that could be the top-level module `name`."""
+    """Return the files and folders in all workspaces that could be the top-level module `name`."""
     return tuple(place for workspace in workspaces() for place in _modules(workspace.root).get(name, ()))
 
 
 @cache
 def _modules(root: Path) -> dict[str, tuple[Path, ...]]:
-    """Return the files and folders of a workspace that could be top-level modules, by name."""
+    """Return the files and folders in a workspace that could be top-level modules, by name."""
     found: dict[str, tuple[Path, ...]] = {}
     for folder, files in folders(root):
         if folder.name in ("launch", "test", "tests"):
@@ -124,7 +124,7 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
 
 @cache
 def is_optional(file: str, line: int) -> bool:
-    """Return whether a line is in a `try` that catches a failed import."""
+    """Return whether a line is in a `try` that catches failed imports."""
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):

@@ -1,7 +1,7 @@
-"""Signals of nodes: handlers, alarms and signals to the own process; other code and forked children keep the real ones.
+"""Signals of nodes: handlers, alarms, and signals to their own process; other code keeps the real ones.
 
-A node runs inside pytest. A real handler of a node would replace pytest's, so that Ctrl-C would no longer end the run,
-and a real signal to the own process or an alarm would end pytest.
+A node runs inside pytest. Its real handlers would replace pytest's, so that Ctrl-C would no longer stop the run. An
+alarm, or a real signal to its own process, would end pytest.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pytest_tarl.ros.exiting import ProcessExit
 from pytest_tarl.ros.process import Process, running_process
 from pytest_tarl.ros.scheduler import Task, running_task
 
-# a shell shows this number plus that of the signal as the status of a process that a signal ended
+# when a signal ends a process, a shell shows this number plus that of the signal as its exit status
 _BY_A_SIGNAL = 128
 _HARMLESS = frozenset(
     getattr(signal, name)
@@ -35,25 +35,25 @@ _UNCHANGEABLE = frozenset(getattr(signal, name) for name in ("SIGKILL", "SIGSTOP
 
 
 class _Signals:
-    """The handlers and the alarm of one process. Times are virtual, in ns."""
+    """The signal handlers and the alarm of a process; times are virtual, in ns."""
 
     def __init__(self, process: Process) -> None:
         self.process = process
         self.handlers: dict[int, Any] = {}
         self.paused: list[Task] = []
-        # the instant of the next alarm and the time between alarms; 0 without one
+        # when the next alarm rings, and the time between alarms; 0 for none
         self.alarm = self.interval = 0
-        self._set = 0  # how often the alarm was set; an alarm that was set again does not ring
+        self._set = 0  # how often the alarm was set; if it was set again, the earlier alarm does not ring
 
     def handler(self, number: int) -> Any:
-        """Return the handler of a signal."""
+        """Return a signal's handler."""
         default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
         return self.handlers.get(number, default)
 
     def receive(self, number: int) -> None:
         """Call the handler in the running task, or do what the signal does by default.
 
-        SIGINT and SIGTERM shut the node down, because rospy and rclpy handle them in this way.
+        SIGINT and SIGTERM shut the node down, as rospy and rclpy do.
         """
         handler = self.handler(number)
         if callable(handler) and handler is not signal.default_int_handler:
@@ -85,7 +85,7 @@ class _Signals:
             process.scheduler.wake(task)
 
     def set_alarm(self, delay: int, interval: int = 0) -> tuple[int, int]:
-        """Set the alarm, or remove it if `delay` is 0; return what was left of the previous one, and its interval."""
+        """Set the alarm, or remove it if `delay` is 0; return the rest of the previous alarm, and its interval."""
         scheduler = self.process.scheduler
         before = max(self.alarm - scheduler.time, 0) if self.alarm else 0, self.interval
         self._set += 1
@@ -103,7 +103,7 @@ class _Signals:
 
 @contextmanager
 def signals_of_nodes() -> Iterator[None]:
-    """Replace the functions that handle and send signals and that replace the process, while nodes run."""
+    """Replace the functions that handle or send signals, or replace the process, while nodes run."""
     owner = os.getpid()
 
     def own() -> _Signals | None:
@@ -114,7 +114,7 @@ def signals_of_nodes() -> Iterator[None]:
 
         def replace(module: Any, name: str, virtual: Callable[..., Any]) -> None:
             real = getattr(module, name, None)
-            if real is None:  # not on this system
+            if real is None:  # does not exist on this system
                 return
 
             def choose(*args: Any, **named: Any) -> Any:

@@ -1,4 +1,4 @@
-"""actionlib, implemented on the topics of its protocol (goal, cancel, …), so that a test's world can take part."""
+"""actionlib, built on the topics of its protocol (goal, cancel, …), so that a test's world can take part."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = [
 
 
 def get_name_of_constant(C: Any, n: int) -> str:  # noqa: N803 (actionlib's names)
-    """Return the name of a class's constant with the value `n`, such as a state, or "No such constant"."""
+    """Return the name of the constant of a class with the value `n`, or "No such constant"."""
     return next(
         (name for name, value in vars(C).items() if type(value) is int and value == n), "No such constant"
     )

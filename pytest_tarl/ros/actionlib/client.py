@@ -23,19 +23,19 @@ from pytest_tarl.ros.scheduler import Task, current_task
 
 
 class SimpleGoalState:
-    """Coarse state of a goal."""
+    """The simple state of a goal."""
 
     PENDING, ACTIVE, DONE = range(3)
 
 
 class SimpleClientGoalState:
-    """Goal states under the names that older nodes use."""
+    """Goal states, under names that older nodes use."""
 
     PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 0, 1, 2, 3, 4, 5, 8, 9
 
 
 class GoalManager:
-    """Placeholder for actionlib's class; several goals of one client are not implemented."""
+    """Placeholder for actionlib's class: one client cannot have several goals."""
 
     def __init__(self, *_: Any) -> None:
         raise unsupported("actionlib.GoalManager")
@@ -64,7 +64,7 @@ class SimpleActionClient:
         Subscriber(f"{self._name}/feedback", self._types.action_feedback, self._take_feedback)
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until the action has a server; return whether it has one in time. There is no limit for None or zero."""
+        """Wait for a server; return whether one appeared in time. None or zero waits without limit."""
         return self._wait(lambda: self._servers.ready(self._name), timeout, poll=True)
 
     def send_goal(
@@ -87,7 +87,7 @@ class SimpleActionClient:
         self._goal_pub.publish(message)
 
     def send_goal_and_wait(self, goal: Any, execute_timeout: Any = None, preempt_timeout: Any = None) -> int:
-        """Send a goal and wait for its end; cancel it after the first timeout. Return its state."""
+        """Send a goal and wait for its end; after the first timeout, cancel it. Return its state."""
         self.send_goal(goal)
         if not self.wait_for_result(execute_timeout):
             self.cancel_goal()
@@ -95,17 +95,17 @@ class SimpleActionClient:
         return self.get_state()
 
     def wait_for_result(self, timeout: Any = None) -> bool:
-        """Wait until the goal has ended; return whether it ended in time. There is no limit for None or zero."""
+        """Wait for the goal to end; return whether it ended in time. None or zero waits without limit."""
         if self._goal_id is None:
             return False
         return self._wait(lambda: self._done, timeout)
 
     def get_result(self) -> Any:
-        """Return the result, or None before there is one."""
+        """Return the result; None if there is none yet."""
         return self._result
 
     def get_state(self) -> int:
-        """Return the goal's state as a number of actionlib_msgs/GoalStatus, or LOST if there is no goal."""
+        """Return the goal's state, a number of actionlib_msgs/GoalStatus; LOST if there is no goal."""
         asked()
         if self._goal_id is None:
             return protocol.LOST
@@ -126,7 +126,7 @@ class SimpleActionClient:
         self._cancel_pub.publish(message_type("actionlib_msgs/GoalID")())
 
     def cancel_goals_at_and_before_time(self, time: Any) -> None:
-        """Ask the server to cancel all goals sent up to an instant."""
+        """Ask the server to cancel all goals sent up to a given time."""
         self._cancel_pub.publish(message_type("actionlib_msgs/GoalID")(time, ""))
 
     def stop_tracking_goal(self) -> None:
@@ -144,7 +144,7 @@ class SimpleActionClient:
         for status in message.status_list:
             if self._mine(status) and self._state not in TERMINAL:
                 began = self._state == protocol.PENDING and status.status == protocol.ACTIVE
-                # a terminal state counts only when it arrives with the result
+                # a terminal state counts only once the result arrives
                 if status.status not in TERMINAL:
                     self._state = status.status
                 if began and self._active_cb is not None:

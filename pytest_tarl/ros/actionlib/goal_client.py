@@ -1,4 +1,4 @@
-"""actionlib's ActionClient: several goals at a time, each with a handle."""
+"""actionlib's ActionClient: several goals at a time, each with its own handle."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pytest_tarl.ros.rospy.timing import Time, get_rostime
 
 
 class ClientGoalHandle:
-    """A goal that was sent: its states, its result, and its cancellation."""
+    """A goal that was sent: its states, its result, and how to cancel it."""
 
     def __init__(self, client: ActionClient, goal_id: Any, on_change: Any, on_feedback: Any) -> None:
         self._client, self._id = client, goal_id.id
@@ -44,12 +44,12 @@ class ClientGoalHandle:
         self._go(CommState.WAITING_FOR_CANCEL_ACK)
 
     def get_comm_state(self) -> int:
-        """Return the state of the communication, a number of CommState."""
+        """Return the communication state, a number of CommState."""
         asked()
         return self._state
 
     def get_goal_status(self) -> int:
-        """Return the last status that the server reported, a number of actionlib_msgs/GoalStatus."""
+        """Return the last status from the server, a number of actionlib_msgs/GoalStatus."""
         asked()
         return int(self._status.status)
 
@@ -58,11 +58,11 @@ class ClientGoalHandle:
         return str(self._status.text)
 
     def get_result(self) -> Any:
-        """Return the result, or None before there is one."""
+        """Return the result; None if there is none yet."""
         return self._result
 
     def get_terminal_state(self) -> int:
-        """Return the status in which the goal ended, or LOST with an error in the log if it has not ended."""
+        """Return the status in which the goal ended; if it has not ended, log an error and return LOST."""
         if self._state != CommState.DONE:
             logwarn("Asking for the terminal state when we're in [%s]", CommState.to_string(self._state))
         if self._status.status in TERMINAL:
@@ -71,7 +71,7 @@ class ClientGoalHandle:
         return TerminalState.LOST
 
     def take_status(self, status: Any) -> None:
-        """Follow a status of the server."""
+        """Process a status from the server."""
         if status.goal_id.id == self._id and self._state != CommState.DONE:
             self._status = status
             for state in steps(self._state, status.status):
@@ -85,7 +85,7 @@ class ClientGoalHandle:
             self._go(CommState.DONE)
 
     def take_feedback(self, message: Any) -> None:
-        """Pass feedback on to the callback."""
+        """Pass feedback to the callback."""
         mine = message.status.goal_id.id == self._id and self._state != CommState.DONE
         if mine and self._on_feedback is not None:
             self._on_feedback(self, message.feedback)
@@ -120,7 +120,7 @@ class ActionClient:
         transition_cb: Callable[[ClientGoalHandle], Any] | None = None,
         feedback_cb: Callable[[ClientGoalHandle, Any], Any] | None = None,
     ) -> ClientGoalHandle:
-        """Send a goal and return its handle; call `transition_cb(handle)` whenever its state changes."""
+        """Send a goal and return its handle; `transition_cb(handle)` is called whenever its state changes."""
         self._servers.goals += 1
         message = self._types.action_goal()
         now = get_rostime()
@@ -133,7 +133,7 @@ class ActionClient:
         return handle
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until the action has a server; return whether it has one in time. There is no limit for None or zero."""
+        """Wait for a server; return whether one appeared in time. None or zero waits without limit."""
         return wait_until(self._node.process, lambda: self._servers.ready(self.ns), timeout, poll=True)
 
     wait_for_action_server_to_start = wait_for_server
@@ -143,7 +143,7 @@ class ActionClient:
         self.publish_cancel(Time(), "")
 
     def cancel_goals_at_and_before_time(self, time: Any) -> None:
-        """Ask the server to cancel all goals sent up to an instant."""
+        """Ask the server to cancel all goals sent up to a given time."""
         self.publish_cancel(time, "")
 
     def publish_cancel(self, stamp: Any, goal_id: str) -> None:
@@ -157,7 +157,7 @@ class ActionClient:
 
     def _take_status(self, message: Any) -> None:
         for status in message.status_list:
-            if status.status not in TERMINAL:  # a terminal state counts only when it arrives with the result
+            if status.status not in TERMINAL:  # a terminal state counts only once the result arrives
                 for goal in tuple(self._goals):
                     goal.take_status(status)
 

@@ -1,4 +1,4 @@
-"""actionlib's ActionServer: several goals at a time, each with a handle."""
+"""actionlib's ActionServer: several goals at a time, each with its own handle."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Duration, Time, get_rostime
 from pytest_tarl.ros.rospy.timing import Timer as PeriodicTimer
 
-# time between two publications of all states (s), as in actionlib by default
+# seconds between two publications of all states (actionlib's default)
 _PERIOD: Final = 0.2
-# time for which the state of an ended goal is published (s), as in actionlib by default
+# seconds for which the state of an ended goal is still published (actionlib's default)
 _KEPT: Final = 5.0
 _TOO_OLD: Final = (
     "This goal handle was canceled by the action server because its timestamp is before the timestamp of the last "
@@ -26,14 +26,14 @@ _RUNNING: Final = (protocol.ACTIVE, protocol.PREEMPTING)
 
 
 class ServerGoalHandle:
-    """A goal of the server: its state, and the transitions that the node makes."""
+    """A goal of the server: its state, and the node's transitions."""
 
     def __init__(self, server: ActionServer, message: Any) -> None:
         self.action_server = server
         self.goal = message
         self._status = protocol.PENDING
         self._text = ""
-        self.ended: Any = None  # instant
+        self.ended: Any = None  # when the goal ended
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ServerGoalHandle) and self.goal.goal_id.id == other.goal.goal_id.id
@@ -58,12 +58,12 @@ class ServerGoalHandle:
         return self.action_server.get_default_result()
 
     def set_accepted(self, text: str = "") -> None:
-        """Accept the goal; if its cancellation is requested, it becomes PREEMPTING."""
+        """Accept the goal; if its cancellation was requested, it becomes PREEMPTING."""
         after = {protocol.PENDING: protocol.ACTIVE, protocol.RECALLING: protocol.PREEMPTING}
         self._change(after, "an active", "pending or recalling", text)
 
     def set_canceled(self, result: Any = None, text: str = "") -> None:
-        """End the goal as RECALLED if it was not accepted, else as PREEMPTED."""
+        """End the goal: as RECALLED if it was not accepted, otherwise as PREEMPTED."""
         after = dict.fromkeys(_WAITING, protocol.RECALLED) | dict.fromkeys(_RUNNING, protocol.PREEMPTED)
         self._end(after, "a cancelled", "pending, recalling, active, or preempting", result, text)
 
@@ -83,7 +83,7 @@ class ServerGoalHandle:
         self._end(after, "a succeeded", "active or preempting", result, text)
 
     def set_cancel_requested(self) -> bool:
-        """Note a cancel request; return whether it affects a goal."""
+        """Note a cancel request; return whether the goal can still be cancelled."""
         after = {protocol.PENDING: protocol.RECALLING, protocol.ACTIVE: protocol.PREEMPTING}.get(self._status)
         if after is None:
             return False
@@ -107,14 +107,12 @@ class ServerGoalHandle:
     def _end(self, after: dict[int, int], kind: str, needed: str, result: Any, text: str) -> None:
         if self._change(after, kind, needed, text):
             self.ended = get_rostime()
-            result = (
-                result or self.get_default_result()
-            )  # as in actionlib, 0 and '' also mean that there is no result
+            result = result or self.get_default_result()  # in actionlib, 0 and '' also count as no result
             self.action_server.publish_result(self.get_goal_status(), result)
 
 
 class ActionServer:
-    """Passes goals and cancel requests to callbacks, each with the handle of the goal."""
+    """Passes goals and cancel requests to callbacks, with the goal's handle."""
 
     def __init__(
         self,
@@ -164,7 +162,7 @@ class ActionServer:
         self.publish_status()
 
     def stop(self) -> None:
-        """Accept no further goals, and end all publications and subscriptions."""
+        """Accept no more goals, and end all publications and subscriptions."""
         self.started = False
         self.status_timer.shutdown()
         self._node.process.ros.part(ActionServers).names.discard(self.ns)
@@ -189,7 +187,7 @@ class ActionServer:
         self.feedback_pub.publish(message)
 
     def publish_status(self) -> None:
-        """Publish the states of all goals except those that ended more than five seconds ago."""
+        """Publish the states of all goals, except those that ended more than five seconds ago."""
         if not self.started:
             return
         now = get_rostime()
@@ -210,7 +208,7 @@ class ActionServer:
             self.goal_callback(handle)
 
     def _take_cancel(self, message: Any) -> None:
-        """Cancel the goal with the message's ID, goals sent up to its stamp, or all goals if it has neither."""
+        """Cancel the goal with the message's ID, goals sent up to its stamp, or, without either, all goals."""
         for handle in tuple(self._goals):
             goal_id = handle.get_goal_id()
             earlier = message.stamp != Time() and goal_id.stamp <= message.stamp

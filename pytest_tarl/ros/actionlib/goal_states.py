@@ -1,4 +1,4 @@
-"""States of a goal as an ActionClient sees them, and the transitions that follow from a status of the server."""
+"""Goal states as seen by an ActionClient, and the transitions caused by a status from the server."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pytest_tarl.ros.actionlib import protocol
 
 
 class CommState:
-    """State of the communication about a goal."""
+    """The state of the communication about a goal."""
 
     WAITING_FOR_GOAL_ACK, PENDING, ACTIVE, WAITING_FOR_RESULT, WAITING_FOR_CANCEL_ACK = range(5)
     RECALLING, PREEMPTING, DONE, LOST = range(5, 9)
@@ -20,7 +20,7 @@ class CommState:
 
 
 class TerminalState:
-    """States in which a goal can end."""
+    """The states in which a goal can end."""
 
     RECALLED, REJECTED, PREEMPTED = protocol.RECALLED, protocol.REJECTED, protocol.PREEMPTED
     ABORTED, SUCCEEDED, LOST = protocol.ABORTED, protocol.SUCCEEDED, protocol.LOST
@@ -37,7 +37,7 @@ def _name(kind: type, state: int) -> str:
 
 
 _PENDING, _ACTIVE, _RESULT = CommState.PENDING, CommState.ACTIVE, CommState.WAITING_FOR_RESULT
-_ACKNOWLEDGED: Final = {  # status → states of a goal whose cancellation was not requested
+_ACKNOWLEDGED: Final = {  # status → states of a goal without a cancel request
     protocol.PENDING: (_PENDING,),
     protocol.ACTIVE: (_ACTIVE,),
     protocol.REJECTED: (_PENDING, _RESULT),
@@ -48,7 +48,7 @@ _ACKNOWLEDGED: Final = {  # status → states of a goal whose cancellation was n
     protocol.SUCCEEDED: (_ACTIVE, _RESULT),
     protocol.ABORTED: (_ACTIVE, _RESULT),
 }
-_CANCELLED: Final = {  # status → states of a goal whose cancellation was requested
+_CANCELLED: Final = {  # status → states of a goal with a cancel request
     protocol.REJECTED: (_RESULT,),
     protocol.RECALLING: (CommState.RECALLING,),
     protocol.RECALLED: (CommState.RECALLING, _RESULT),

@@ -1,4 +1,4 @@
-"""Common parts of the client and the server of a ROS 1 action."""
+"""What client and server of a ROS 1 action have in common."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ActionException(Exception):  # noqa: N818 (actionlib's name)
 
 
 class ActionServers:
-    """The actions that nodes of an episode serve, and the number of goals so far."""
+    """The actions that an episode's nodes serve, and the number of goals so far."""
 
     def __init__(self, ros: Network) -> None:
         self._ros = ros
@@ -45,14 +45,14 @@ class ActionServers:
 
 
 class GoalIDGenerator:
-    """Makes IDs of goals that are unique in an episode."""
+    """Generates IDs of goals that are unique within an episode."""
 
     def __init__(self, name: str | None = None) -> None:
         self._node = this_node("GoalIDGenerator")
         self.set_name(name or self._node.name)
 
     def set_name(self, name: str) -> None:
-        """Set the name at the beginning of the IDs."""
+        """Set the name with which IDs begin."""
         self.name = name
 
     def generate_ID(self) -> Any:  # noqa: N802 (actionlib's name)
@@ -65,7 +65,7 @@ class GoalIDGenerator:
 
 
 class ActionTypes:
-    """The message classes of an action, derived from its action class."""
+    """The message classes of an action, found through its action class."""
 
     def __init__(self, spec: Any) -> None:
         try:
@@ -81,9 +81,9 @@ class ActionTypes:
 
 
 def wait_until(process: Process, condition: Callable[[], bool], timeout: Any, *, poll: bool = False) -> bool:
-    """Wait until a condition holds; return whether it holds in time. There is no limit for None or zero.
+    """Wait for a condition; return whether it became true in time. None or zero waits without limit.
 
-    Without `poll`, other code must wake the caller's task whenever the condition may have changed.
+    Without `poll`, the caller's task must be woken whenever the condition may have changed.
     """
     clock = process.scheduler
     span = 0 if timeout is None else timeout.to_nsec()

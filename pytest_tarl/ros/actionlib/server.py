@@ -22,7 +22,7 @@ _TOO_OLD = (
 
 
 class SimpleActionServer:
-    """Executes goals with `execute_cb(goal)` in a task of the server, or announces them by callbacks."""
+    """Runs `execute_cb(goal)` in a task of the server, or announces goals by callbacks."""
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class SimpleActionServer:
         self._next: Any = None
         self._status: dict[str, int] = {}
         self._preempt_requested = False
-        self._cancelled_until = Time()  # latest stamp of a cancel request
+        self._cancelled_until = Time()  # latest stamp of any cancel request
         self._worker: Task | None = None
         self._started = False
         if auto_start:
@@ -79,7 +79,7 @@ class SimpleActionServer:
         self._preempt_callback = cb
 
     def accept_new_goal(self) -> Any:
-        """Accept the newest goal; preempt one that is still active."""
+        """Accept the newest goal; preempt the active one."""
         if self._next is None:
             logerr("Attempting to accept the next goal when a new goal is not available")
             return None
@@ -91,11 +91,11 @@ class SimpleActionServer:
         return self._current.goal
 
     def is_new_goal_available(self) -> bool:
-        """Return whether a new goal waits."""
+        """Return whether a new goal is waiting."""
         return self._next is not None
 
     def is_preempt_requested(self) -> bool:
-        """Return whether preemption of the current goal is requested."""
+        """Return whether the current goal is to be preempted."""
         return self._preempt_requested
 
     def is_active(self) -> bool:
@@ -143,7 +143,7 @@ class SimpleActionServer:
             self._node.process.scheduler.wake(self._worker)
 
     def _take_cancel(self, message: Any) -> None:
-        """Cancel the goal with the message's ID, goals sent up to its stamp, or all goals if it has neither."""
+        """Cancel the goal with the message's ID, goals sent up to its stamp, or, without either, all goals."""
 
         def meant(goal_id: Any) -> bool:
             earlier = bool(message.stamp) and goal_id.stamp <= message.stamp
@@ -195,7 +195,7 @@ class SimpleActionServer:
         self._set(goal.goal_id, status, text)
         message = self._types.action_result()
         self._address(message, goal.goal_id, text)
-        # as in actionlib, 0 and '' also mean that there is no result
+        # in actionlib, 0 and '' also count as no result
         message.result = result or self._types.result()
         self._result_pub.publish(message)
 

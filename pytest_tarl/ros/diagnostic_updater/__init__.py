@@ -34,7 +34,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Return a class or a level of the caller's ROS generation; raise for a name that the stand-in lacks."""
+    """Return a class or level of the caller's ROS generation; raise for a name that the stand-in lacks."""
     if name != "DiagnosticStatusWrapper" and name not in (*_MESSAGES, *_LEVELS):
         raise AttributeError(name)
     from pytest_tarl.ros.install import kind_of_caller

@@ -27,7 +27,7 @@ class Heartbeat(DiagnosticTask):
 
 @dataclass(eq=False)
 class FrequencyStatusParam:
-    """Bounds of a frequency (Hz): `freq_bound` has the keys "min" and, optionally, "max"; `tolerance` is relative."""
+    """Limits of a frequency (Hz): `freq_bound` has the keys "min" and, optionally, "max"; `tolerance` is relative."""
 
     freq_bound: Mapping[str, float]
     tolerance: float = 0.1
@@ -46,18 +46,18 @@ class FrequencyStatus(DiagnosticTask):
     def clear(self) -> None:
         """Forget all events."""
         self.count = 0
-        self._marks = [(_now(), 0)] * self.params.window_size  # time (s) and number of events at each update
+        self._marks = [(_now(), 0)] * self.params.window_size  # (time (s), number of events) at each update
 
     def tick(self) -> None:
         """Count an event."""
         self.count += 1
 
     def run(self, stat: Any) -> Any:
-        """Compare the frequency since the oldest update of the window with the bounds."""
+        """Compare the frequency with the limits, since the oldest update in the window."""
         began, before = self._marks[0]
         self._marks = [*self._marks[1:], (_now(), self.count)]
         events, window = self.count - before, _now() - began
-        # unlike real time, virtual time may stand still between two calls
+        # virtual time, unlike real time, may stand still between two calls
         frequency = events / window if window else math.inf if events else 0.0
         least = self.params.freq_bound["min"] * (1 - self.params.tolerance)
         bound = self.params.freq_bound.get("max")
@@ -85,7 +85,7 @@ class FrequencyStatus(DiagnosticTask):
 
 @dataclass(eq=False)
 class TimeStampStatusParam:
-    """Bounds of the age of a stamp, in seconds."""
+    """Limits of a stamp's age in seconds."""
 
     min_acceptable: float = -1
     max_acceptable: float = 5
@@ -111,7 +111,7 @@ class TimeStampStatus(DiagnosticTask):
             self._ages.append(_now() - seconds)
 
     def run(self, stat: Any) -> Any:
-        """Compare the youngest and the oldest stamp since the last update with the bounds."""
+        """Compare the youngest and the oldest stamp since the last update with the limits."""
         youngest, oldest = min(self._ages, default=0.0), max(self._ages, default=0.0)
         stat.set_level(0, "Timestamps are reasonable.")
         if not self._ages:
@@ -138,7 +138,7 @@ class TimeStampStatus(DiagnosticTask):
 
 
 class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
-    """A diagnosis of a topic's frequency, added to an updater."""
+    """Adds a check of a topic's frequency to an updater."""
 
     def __init__(self, name: str, diag: Any, freq: FrequencyStatusParam) -> None:
         super().__init__(f"{name} topic status")
@@ -157,7 +157,7 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
 
 
 class TopicDiagnostic(HeaderlessTopicDiagnostic):
-    """A diagnosis of a topic's frequency and time stamps, added to an updater."""
+    """Adds a check of a topic's frequency and time stamps to an updater."""
 
     def __init__(self, name: str, diag: Any, freq: FrequencyStatusParam, stamp: TimeStampStatusParam) -> None:
         super().__init__(name, diag, freq)
@@ -171,10 +171,10 @@ class TopicDiagnostic(HeaderlessTopicDiagnostic):
 
 
 class DiagnosedPublisher(TopicDiagnostic):
-    """A publisher whose messages are counted; they need a header."""
+    """A publisher that counts its messages, which need a header."""
 
     def __init__(self, pub: Any, diag: Any, freq: FrequencyStatusParam, stamp: TimeStampStatusParam) -> None:
-        topic = getattr(pub, "name", None)  # rospy's publishers have a name, rclpy's a topic
+        topic = getattr(pub, "name", None)  # publishers of rospy have `name`, those of rclpy `topic`
         super().__init__(pub.topic_name if topic is None else topic, diag, freq, stamp)
         self.publisher = pub
 

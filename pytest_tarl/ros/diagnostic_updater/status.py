@@ -11,12 +11,12 @@ from pytest_tarl.ros.messages.type_definitions import Kind
 
 
 def number(level: Any) -> int:
-    """Return a level as a number; in ROS 2, a level is one byte."""
+    """Return a level as a number; in ROS 2, it is one byte."""
     return level[0] if isinstance(level, bytes) else int(level)
 
 
 class _Filling:
-    """Methods that a status gets in addition to the fields of its message."""
+    """Methods that a status has in addition to its message fields."""
 
     level: Any
     message: str
@@ -35,9 +35,9 @@ class _Filling:
         self.set_level(0, "")
 
     def mergeSummary(self, *args: Any) -> None:
-        """Merge level and message with those of this status.
+        """Merge level and message into those of this status.
 
-        The higher level wins. If both levels are OK, or neither is, the messages are joined. Otherwise the message of
+        The higher level wins. If both levels are OK, or neither is, the messages are joined. Otherwise the message with
         the higher level wins.
         """
         level, text = (args[0].level, args[0].message) if len(args) == 1 else args

@@ -1,4 +1,4 @@
-"""Diagnostic tasks: objects that fill a status when an updater asks for it."""
+"""Diagnostic tasks: objects that fill a status when an updater runs them."""
 
 # ruff: noqa: N802 (names are those of diagnostic_updater)
 
@@ -40,7 +40,7 @@ class FunctionDiagnosticTask(DiagnosticTask):
 
 
 class CompositeDiagnosticTask(DiagnosticTask):
-    """Several tasks with one status: their highest level, and the messages of the tasks that are not OK."""
+    """Several tasks with a common status: the highest level, and the messages of tasks that are not OK."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -51,7 +51,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
         self.tasks.append(t)
 
     def run(self, stat: Any) -> Any:
-        """Run all tasks, each starting from the status's current summary, and merge their summaries."""
+        """Run all tasks, each starting from the status's summary, and merge their summaries."""
         given, merged = type(stat)(), type(stat)()
         given.summary(stat)
         for task in self.tasks:
@@ -84,7 +84,7 @@ class DiagnosticTaskVector:
         self.lock = threading.Lock()
 
     def addedTaskCallback(self, task: Any) -> None:
-        """Do nothing; subclasses react to a new task."""
+        """Do nothing; subclasses react to new tasks."""
 
     def add(self, *args: Any) -> None:
         """Add a task, or a name and a function."""

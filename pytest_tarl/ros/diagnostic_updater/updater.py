@@ -1,4 +1,4 @@
-"""The updater: it runs its tasks once a period, and publishes their statuses on /diagnostics."""
+"""The updater: it runs its tasks once per period and publishes their statuses on /diagnostics."""
 
 # ruff: noqa: N802 (names are those of diagnostic_updater)
 
@@ -13,7 +13,7 @@ from pytest_tarl.ros.messages import class_of
 from pytest_tarl.ros.messages.type_definitions import Kind
 from pytest_tarl.ros.process import current_process
 
-_CHECK_SECONDS = 0.25  # interval (s) at which rospy's updater reads its period from the parameter server
+_CHECK_SECONDS = 0.25  # seconds between two reads of the period from the parameter server (rospy)
 _NO_ID = (
     "diagnostic_updater: no hardware ID was set: call setHardwareID, with 'none' for a device without one."
 )
@@ -41,7 +41,7 @@ class Updater(DiagnosticTaskVector):
         self.timer = node.create_timer(self.period, self.update)
 
     def update(self) -> None:
-        """Run the tasks and publish, if a period has passed since the last time."""
+        """Run the tasks and publish, if a period has passed since the last update."""
         if self.node is None and _seconds() >= self._read_at + _CHECK_SECONDS:
             from pytest_tarl.ros.rospy.parameters import get_param
 
@@ -60,7 +60,7 @@ class Updater(DiagnosticTaskVector):
         self.publish(statuses)
 
     def broadcast(self, lvl: Any, msg: str) -> None:
-        """Publish one level and message for all tasks."""
+        """Publish the same level and message for all tasks."""
         statuses = [self._status(task.name) for task in self.tasks]
         for status in statuses:
             status.summary(lvl, msg)
@@ -71,7 +71,7 @@ class Updater(DiagnosticTaskVector):
         self.hwid = hwid
 
     def publish(self, msg: Any) -> None:
-        """Publish a status or a list of statuses, each with the node's name before its own."""
+        """Publish one or more statuses, with the node's name before each status's own."""
         statuses = msg if isinstance(msg, list) else [msg]
         for status in statuses:
             status.name = f"{self._name()}: {status.name}"

@@ -1,4 +1,4 @@
-"""dynamic_reconfigure, for parameters that change at run time: server, client, generated configurations."""
+"""dynamic_reconfigure, for parameters that change at run time: server, client, and generated configurations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class DynamicReconfigureCallbackException(DynamicReconfigureException):
 
 
 def find_reconfigure_services() -> list[str]:
-    """Return the names of the nodes that offer reconfigurable parameters, sorted."""
+    """Return the sorted names of the nodes with reconfigurable parameters."""
     from pytest_tarl.ros.tools import graph
 
     return sorted(
@@ -29,5 +29,5 @@ def find_reconfigure_services() -> list[str]:
 
 
 def get_parameter_names(config: dict[str, Any]) -> list[str]:
-    """Return the names of the parameters of a configuration."""
+    """Return the names of a configuration's parameters."""
     return list(config.keys())

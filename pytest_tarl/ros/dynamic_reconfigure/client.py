@@ -34,7 +34,7 @@ class Client:
         )
 
     def get_configuration(self, timeout: float | None = None) -> Config | None:  # noqa: ARG002
-        """Return the last configuration from the server."""
+        """Return the server's last configuration."""
         return self._config
 
     def update_configuration(self, changes: dict[str, Any]) -> Config:
@@ -42,11 +42,11 @@ class Client:
         return decode_config(self._proxy(encode_config(changes)).config)
 
     def get_config_callback(self) -> Callable[[Config], Any] | None:
-        """Return the function that gets every configuration."""
+        """Return the function that receives every configuration."""
         return self._callback
 
     def set_config_callback(self, value: Callable[[Config], Any] | None) -> None:
-        """Set the function that gets every configuration; call it with the current one."""
+        """Set the function that receives every configuration; call it with the current one."""
         self._callback = value
         if value is not None and self._config is not None:
             value(self._config)
@@ -54,7 +54,7 @@ class Client:
     config_callback = property(get_config_callback, set_config_callback)
 
     def close(self) -> None:
-        """Stop taking configurations."""
+        """Stop receiving configurations."""
         self._subscriber.unregister()
 
     def _take(self, message: Any) -> None:

@@ -12,7 +12,7 @@ _TYPES = {"bool": bool, "int": int, "double": float, "str": str}
 
 
 class Config(dict[str, Any]):
-    """A configuration: `config.speed` and `config["speed"]`. `groups` is always empty here."""
+    """A configuration, as in `config.speed` and `config["speed"]`; here, `groups` is always empty."""
 
     def __getattr__(self, name: str) -> Any:
         if name == "groups":
@@ -27,7 +27,7 @@ class Config(dict[str, Any]):
 
 
 def described(config_type: Any) -> dict[str, dict[str, Any]]:
-    """Return the description of each parameter of a generated configuration module, groups flattened."""
+    """Return the description of each parameter in a generated configuration module, without groups."""
     found = {}
     groups = [config_type.config_description]
     while groups:
@@ -38,7 +38,7 @@ def described(config_type: Any) -> dict[str, dict[str, Any]]:
 
 
 def checked(config_type: Any, given: dict[str, Any]) -> Config:
-    """Convert values to their parameters' types and clip them to the limits.
+    """Convert values to their parameters' types, and clip them to the limits.
 
     Raise DynamicReconfigureParameterException for an unknown parameter.
     """
@@ -58,7 +58,7 @@ def checked(config_type: Any, given: dict[str, Any]) -> Config:
 
 
 def level_of(config_type: Any, old: dict[str, Any], new: dict[str, Any]) -> int:
-    """Return the bitwise or of the levels of all changed parameters."""
+    """Return the bitwise or of all changed parameters' levels."""
     level = 0
     for name, one in described(config_type).items():
         if old.get(name) != new.get(name):

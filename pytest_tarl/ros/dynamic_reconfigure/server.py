@@ -19,11 +19,11 @@ from pytest_tarl.ros.rospy.parameters import get_param, set_param
 from pytest_tarl.ros.rospy.services import Service
 from pytest_tarl.ros.rospy.topics import Publisher
 
-_EVERYTHING = 0xFFFFFFFF  # level of the first call: all bits
+_EVERYTHING = 0xFFFFFFFF  # level of the first call: all bits set
 
 
 class Server:
-    """Calls `callback(config, level)` at the start and at each change, and uses the configuration that it returns."""
+    """Calls `callback(config, level)` at the start and after each change; the returned configuration is used."""
 
     def __init__(self, type: Any, callback: Callable[[Config, int], Any], namespace_prefix: str = "") -> None:  # noqa: A002
         self.type = type

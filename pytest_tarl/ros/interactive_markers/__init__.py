@@ -1,4 +1,4 @@
-"""interactive_markers for both ROS generations: markers that a user drags or whose menu a user opens."""
+"""interactive_markers for both ROS generations: markers that users drag, or whose menus they open."""
 
 from __future__ import annotations
 

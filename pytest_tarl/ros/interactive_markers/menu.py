@@ -1,4 +1,4 @@
-"""Menus of interactive markers: entries with a callback, a parent, and a check mark."""
+"""Menus of interactive markers: entries with a callback, a parent and a check mark."""
 
 # ruff: noqa: N802 (names and signatures are those of interactive_markers)
 
@@ -14,12 +14,12 @@ from pytest_tarl.ros.interactive_markers.server import __getattr__ as __getattr_
 __all__ = ["MenuHandler", *MESSAGES]
 
 _MENU_SELECT = 2  # InteractiveMarkerFeedback.MENU_SELECT
-_MARKS = {1: "[ ] ", 2: "[x] "}  # text before the title of an entry, by check state
+_MARKS = {1: "[ ] ", 2: "[x] "}  # text before an entry's title, by check state
 
 
 @dataclass
 class _Entry:
-    """An entry of a menu; `parent` is 0 at the top."""
+    """A menu entry; `parent` is 0 at the top level."""
 
     title: str
     parent: int
@@ -31,7 +31,7 @@ class _Entry:
 
 
 class MenuHandler:
-    """A menu that can be applied to several markers; its entries are numbered from 1."""
+    """A menu for one or more markers; entries are numbered from 1."""
 
     NO_CHECKBOX, UNCHECKED, CHECKED = 0, 1, 2
 
@@ -47,7 +47,7 @@ class MenuHandler:
         command: str = "",
         callback: Callable[[Any], Any] | None = None,
     ) -> int | None:
-        """Add an entry at the top or below another entry; return its number, or None if `parent` does not exist."""
+        """Add an entry at the top level or below another; return its number, or None if `parent` does not exist."""
         if parent and parent not in self._entries:
             return None
         number = len(self._entries) + 1
@@ -59,21 +59,21 @@ class MenuHandler:
         return self._set(handle, "visible", visible)
 
     def setCheckState(self, handle: int, check_state: int) -> bool:
-        """Set the check mark of an entry; return whether the entry exists."""
+        """Set an entry's check mark; return whether the entry exists."""
         return self._set(handle, "check", check_state)
 
     def getCheckState(self, handle: int) -> int | None:
-        """Return the check mark of an entry, or None if it does not exist."""
+        """Return an entry's check mark, or None if the entry does not exist."""
         entry = self._entries.get(handle)
         return None if entry is None else entry.check
 
     def getTitle(self, handle: int) -> str | None:
-        """Return the title of an entry, or None if it does not exist."""
+        """Return an entry's title, or None if the entry does not exist."""
         entry = self._entries.get(handle)
         return None if entry is None else entry.title
 
     def apply(self, server: InteractiveMarkerServer, marker_name: str) -> bool:
-        """Give a marker this menu; return whether the server has the marker. `applyChanges` publishes it."""
+        """Give this menu to a marker; return whether the server has the marker. `applyChanges` publishes it."""
         marker = server.get(marker_name)
         if marker is None:
             self._managed.pop(marker_name, None)
@@ -95,13 +95,13 @@ class MenuHandler:
         return True
 
     def reApply(self, server: InteractiveMarkerServer) -> bool:
-        """Give the changed menu to all markers that have it; return whether all of them still exist."""
+        """Update the menu of all markers that have it; return whether they all still exist."""
         names = [name for name, owner in self._managed.items() if owner is server]
         applied = [self.apply(server, name) for name in names]
         return all(applied)
 
     def processFeedback(self, feedback: Any) -> None:
-        """Call the callback of the entry that the user selected."""
+        """Call the callback of the entry selected by the user."""
         entry = self._entries.get(feedback.menu_entry_id)
         if entry is not None and entry.callback is not None:
             entry.callback(feedback)

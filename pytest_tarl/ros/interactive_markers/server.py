@@ -1,4 +1,4 @@
-"""The server of interactive markers: it publishes them, and passes the user's feedback to callbacks."""
+"""The server of interactive markers: it publishes them, and passes user feedback to callbacks."""
 
 # ruff: noqa: ARG002, N802 (names and signatures are those of interactive_markers)
 
@@ -21,7 +21,7 @@ DEFAULT = 255  # event type of the default callback
 
 
 def __getattr__(name: str) -> Any:
-    """Return a message class, which the library exports; raise for a name that the stand-in lacks."""
+    """Return a message class that the library exports; raise for a name that the stand-in lacks."""
     if name in MESSAGES:
         from pytest_tarl.ros.install import kind_of_caller
         from pytest_tarl.ros.messages import class_of
@@ -32,7 +32,7 @@ def __getattr__(name: str) -> Any:
 
 @dataclass
 class _Shown:
-    """A marker and the callbacks for its feedback, by type of event."""
+    """A marker, with its feedback callbacks by event type."""
 
     marker: Any
     callbacks: Callbacks = field(default_factory=dict)
@@ -56,7 +56,7 @@ class InteractiveMarkerServer:
         self._number = 0
         self._shown: dict[str, _Shown] = {}
         self._waiting: dict[str, _Shown | None] = {}  # None for a marker to be erased
-        self._moved: dict[str, Any] = {}  # marker name → new pose, for markers that only moved
+        self._moved: dict[str, Any] = {}  # marker name → new pose, for markers that have only moved
         self._update = self._publisher("update", "InteractiveMarkerUpdate")
         self._full = self._publisher("update_full", "InteractiveMarkerInit")
         self._subscription = self._subscribe("feedback", "InteractiveMarkerFeedback", self.processFeedback)
@@ -68,7 +68,7 @@ class InteractiveMarkerServer:
         feedback_callback: Callable[[Any], Any] | int | None = None,
         feedback_type: int = DEFAULT,
     ) -> None:
-        """Add a marker. If a marker with its name exists, replace it but keep its callbacks."""
+        """Add a marker, or replace the one with the same name, keeping its callbacks."""
         now = self._waiting.get(marker.name) or self._shown.get(marker.name)
         self._waiting[marker.name] = _Shown(snapshot(marker), now.callbacks if now is not None else {})
         self._moved.pop(marker.name, None)
@@ -104,7 +104,7 @@ class InteractiveMarkerServer:
     def setCallback(
         self, name: str, feedback_callback: Callable[[Any], Any] | int | None, feedback_type: int = DEFAULT
     ) -> bool:
-        """Set or remove the callback for a type of event; return whether there is a marker of that name."""
+        """Set or remove the callback for an event type; return whether the marker exists."""
         known = self._newest(name)
         if known is None:
             return False
@@ -115,7 +115,7 @@ class InteractiveMarkerServer:
         return True
 
     def get(self, name: str) -> Any:
-        """Return a copy of a marker with all changes, or None if there is no marker with that name."""
+        """Return a copy of a marker with all changes, or None if it does not exist."""
         known = self._newest(name)
         return None if known is None else snapshot(known.marker)
 

@@ -1,4 +1,4 @@
-"""Stand-in for `PyKDL`: geometry, chains and their kinematic solvers; dynamics is missing."""
+"""Stand-in for `PyKDL`: geometry, chains and their kinematic solvers, without dynamics."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class JntArray:
 
 
 class Jacobian:
-    """A matrix with six rows, and a column (a twist) for each joint."""
+    """A matrix with six rows and one column (a twist) per joint."""
 
     def __init__(self, columns: Any = 0) -> None:
         self.data = np.zeros((6, columns)) if isinstance(columns, int) else columns.data.copy()
@@ -71,7 +71,7 @@ class Jacobian:
         self.data = np.zeros((6, columns))
 
     def getColumn(self, place: int) -> Twist:  # noqa: N802 (these names are KDL's)
-        """Return the twist that one joint causes at speed 1."""
+        """Return the twist caused by a joint at speed 1."""
         column = self.data[:, place]
         return Twist(Vector(*column[:3]), Vector(*column[3:]))
 
@@ -124,7 +124,7 @@ class JointKind(IntEnum):
 
 
 class Joint:
-    """A joint; the arguments are an optional name, an optional origin with an axis, the type, scale and offset."""
+    """A joint: optional name, optional origin and axis, then type, scale and offset."""
 
     JointType = JointKind
     RotAxis, RotX, RotY, RotZ = JointKind.RotAxis, JointKind.RotX, JointKind.RotY, JointKind.RotZ
@@ -157,7 +157,7 @@ class Joint:
             self._axis.Normalize()
 
     def pose(self, value: float) -> Frame:
-        """Return the pose of the joint at a value."""
+        """Return the joint's pose at a value."""
         angle = self._scale * value + self._offset
         if self._kind is JointKind.Fixed:
             return Frame()
@@ -166,7 +166,7 @@ class Joint:
         return Frame(self._origin + self._axis * angle)
 
     def twist(self, speed: float) -> Twist:
-        """Return the twist of the joint at a speed."""
+        """Return the joint's twist at a speed."""
         moved = self._axis * (self._scale * speed)
         return Twist(Vector(), moved) if self._kind < JointKind.TransAxis else Twist(moved, Vector())
 
@@ -227,7 +227,7 @@ class Segment:
         return self._joint.pose(0) * self._tip
 
     def getInertia(self) -> Any:  # noqa: N802
-        """Raise UnsupportedApiError; inertias are not implemented."""
+        """Raise UnsupportedApiError: inertias are not implemented."""
         raise unsupported("PyKDL.Segment.getInertia")
 
 
@@ -250,16 +250,16 @@ class Chain:
         return len(self.segments)
 
     def getNrOfJoints(self) -> int:  # noqa: N802
-        """Return the number of joints that move."""
+        """Return the number of moving joints."""
         return sum(one.getJoint().getType() is not JointKind.Fixed for one in self.segments)
 
     def getSegment(self, place: int) -> Segment:  # noqa: N802
-        """Return a segment by its number."""
+        """Return the segment with this index."""
         return self.segments[place]
 
 
 class Tree:
-    """Segments that branch; each is named, and attached to a named segment or the root."""
+    """Branching segments, each attached by name to another segment or to the root."""
 
     def __init__(self, root: str = "root") -> None:
         self._root = root
@@ -267,7 +267,7 @@ class Tree:
         self._segments: dict[str, Segment] = {}
 
     def addSegment(self, segment: Segment, hook: str) -> bool:  # noqa: N802
-        """Attach a segment; return whether that was possible."""
+        """Attach a segment; return whether its parent exists."""
         name = segment.getName()
         if (
             (hook != self._root and hook not in self._segments)
@@ -279,7 +279,7 @@ class Tree:
         return True
 
     def addChain(self, chain: Chain, hook: str) -> bool:  # noqa: N802
-        """Attach the segments of a chain in a row; return whether that was possible."""
+        """Attach the segments of a chain one after the other; return whether all could be attached."""
         for segment in chain.segments:
             if not self.addSegment(segment, hook):
                 return False
@@ -291,13 +291,13 @@ class Tree:
         return len(self._segments)
 
     def getNrOfJoints(self) -> int:  # noqa: N802
-        """Return the number of joints that move."""
+        """Return the number of moving joints."""
         return sum(one.getJoint().getType() is not JointKind.Fixed for one in self._segments.values())
 
     def getChain(self, root: str, tip: str) -> Chain:  # noqa: N802
-        """Return the segments from `root`, which must be above `tip`, to `tip`.
+        """Return the segments from `root` to `tip`; `root` must be above `tip`.
 
-        Raise UnsupportedApiError for a chain that goes up the tree.
+        Raise UnsupportedApiError for chains that go up the tree.
         """
         names = []
         while tip != root:

@@ -1,4 +1,4 @@
-"""Frames of PyKDL, and its differences and sums of geometric values."""
+"""Frames of PyKDL, and sums and differences of its geometric values."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.ros.kdl.vectors import EPSILON, Twist, Vector, Wrench, equal
 
 
 class Frame:
-    """A pose: the rotation `M` and the position `p`."""
+    """A pose with rotation `M` and position `p`."""
 
     __slots__ = ("_M", "_p")
     __hash__ = None  # type: ignore[assignment]
@@ -48,7 +48,7 @@ class Frame:
 
     @staticmethod
     def Identity() -> Frame:  # noqa: N802
-        """Return the frame without rotation at the origin."""
+        """Return the frame at the origin without rotation."""
         return Frame()
 
     @staticmethod
@@ -64,13 +64,13 @@ class Frame:
         return Frame(tilt * Rotation.RotZ(theta), Vector(a, 0, 0) + tilt * Vector(0, 0, d))
 
     def Inverse(self, other: Any = None) -> Any:  # noqa: N802
-        """Return the inverse, or the inverse applied to a vector, twist or wrench."""
+        """Return the inverse, or apply the inverse to a vector, twist or wrench."""
         turned = self.M.Inverse()
         inverse = Frame(turned, -(turned * self.p))
         return inverse if other is None else inverse * other
 
     def Integrate(self, twist: Twist, frequency: float) -> None:  # noqa: N802
-        """Move by a twist, given in this frame, for the time 1 / `frequency`."""
+        """Move by a twist in this frame, for a time of 1 / `frequency`."""
         change = Frame(Rotation.Rot(twist.rot, twist.rot.Norm() / frequency), twist.vel / frequency)
         moved = self * change
         self.M, self.p = moved.M, moved.p
@@ -129,7 +129,7 @@ def dot(one: Any, other: Any) -> float:
 
 
 def diff(one: Any, other: Any, dt: float = 1.0) -> Any:
-    """Return the change per time from one value to another of the same kind, in the common frame."""
+    """Return the change per time between two values of the same kind, in their common frame."""
     if isinstance(one, Rotation):
         return one * (one.Inverse() * other).GetRot() / dt
     if isinstance(one, Frame):
@@ -138,7 +138,7 @@ def diff(one: Any, other: Any, dt: float = 1.0) -> Any:
 
 
 def addDelta(value: Any, change: Any, dt: float = 1.0) -> Any:  # noqa: N802
-    """Return a value after the change per time `change` for the time `dt`."""
+    """Return a value after changing at the rate `change` for the time `dt`."""
     if isinstance(value, Rotation):
         return value * Rotation.Rot(value.Inverse(change), change.Norm() * dt)
     if isinstance(value, Frame):

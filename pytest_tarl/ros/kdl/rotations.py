@@ -1,4 +1,4 @@
-"""Rotations and frames of PyKDL."""
+"""Rotations of PyKDL."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any, Final, overload
 
 from pytest_tarl.ros.kdl.vectors import Twist, Vector, Wrench, equal, shown
 
-_TINY: Final = 1e-12  # below this angle (rad), KDL treats a rotation as singular
+_TINY: Final = 1e-12  # rad; KDL treats rotations by smaller angles as singular
 _IDENTITY: Final = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
 class Rotation:
-    """A rotation matrix; the constructor takes its nine numbers row by row, or its three columns."""
+    """A rotation matrix, constructed from nine numbers (row by row) or three columns."""
 
     __slots__ = ("_data",)
     __hash__ = None  # type: ignore[assignment]
@@ -32,7 +32,7 @@ class Rotation:
 
     @staticmethod
     def Identity() -> Rotation:  # noqa: N802 (these names are KDL's)
-        """Return the rotation by zero."""
+        """Return the identity."""
         return Rotation()
 
     @staticmethod
@@ -124,7 +124,7 @@ class Rotation:
         self._data = (self * Rotation.RotZ(angle))._data
 
     def GetRPY(self) -> tuple[float, float, float]:  # noqa: N802
-        """Return roll, pitch and yaw; roll is 0 where pitch is ±90°."""
+        """Return roll, pitch and yaw; roll is 0 if pitch is ±90°."""
         m = self._data
         pitch = math.atan2(-m[6], math.hypot(m[0], m[3]))
         if abs(pitch) > math.pi / 2 - _TINY:
@@ -162,7 +162,7 @@ class Rotation:
         return found[0], found[1], found[2], w
 
     def GetRotAngle(self, eps: float = 1e-6) -> tuple[float, Vector]:  # noqa: N802
-        """Return the angle, in [0, π], and the unit axis; a rotation by zero has the z axis."""
+        """Return the angle in [0, π] and the unit axis, which is z for a zero rotation."""
         m = self._data
         axis = Vector(m[7] - m[5], m[2] - m[6], m[3] - m[1])
         sine, cosine = axis.Norm(eps) / 2, (m[0] + m[4] + m[8] - 1) / 2
@@ -173,18 +173,18 @@ class Rotation:
         return math.pi, _half_turn_axis(m)
 
     def GetRot(self) -> Vector:  # noqa: N802
-        """Return the axis with the angle as its length."""
+        """Return the axis, scaled to the angle."""
         angle, axis = self.GetRotAngle()
         return axis * angle
 
     def Inverse(self, other: Any = None) -> Any:  # noqa: N802
-        """Return the inverse, or the inverse applied to a vector, twist or wrench."""
+        """Return the inverse, or apply the inverse to a vector, twist or wrench."""
         m = self._data
         inverse = Rotation(*(m[3 * column + row] for row in range(3) for column in range(3)))
         return inverse if other is None else inverse * other
 
     def SetInverse(self) -> None:  # noqa: N802
-        """Replace the rotation by its inverse."""
+        """Invert the rotation in place."""
         self._data = self.Inverse()._data
 
     def __getitem__(self, place: tuple[int, int]) -> float:
@@ -235,7 +235,7 @@ class Rotation:
 
 
 def _half_turn_axis(m: Sequence[float]) -> Vector:
-    """Return the unit axis of a rotation by 180°, from the largest entry of the diagonal of (R + I) / 2."""
+    """Return the unit axis of a 180° rotation, from the largest diagonal entry of (R + I) / 2."""
     first = 0 if m[0] > m[4] and m[0] > m[8] else 1 if m[4] > m[8] else 2
     length = math.sqrt(max(0.0, (m[4 * first] + 1) / 2))
     return Vector(*(length if one == first else m[3 * first + one] / (2 * length) for one in range(3)))

@@ -1,4 +1,4 @@
-"""Kinematic solvers for chains of PyKDL."""
+"""Kinematic solvers for PyKDL's chains."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ _TEXTS: Final = {
 
 
 class _Solver:
-    """A solver for one chain, with the code of its last result."""
+    """A solver for one chain, and the error code of its last call."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
         self._error = NO_ERROR
 
     def getError(self) -> int:  # noqa: N802 (these names are KDL's)
-        """Return the code of the last result."""
+        """Return the error code of the last call."""
         return self._error
 
     def strError(self, code: int) -> str:  # noqa: N802
-        """Return the text of a code."""
+        """Return the text of an error code."""
         return _TEXTS.get(code, "UNKNOWN ERROR")
 
     def updateInternalDataStructures(self) -> None:  # noqa: N802
-        """Do nothing: the solvers read the chain anew in each call."""
+        """Do nothing: every call of a solver reads the chain again."""
 
     def _ended(self, code: int) -> int:
         self._error = code
@@ -66,7 +66,7 @@ class ChainFkSolverPos_recursive(_Solver):  # noqa: N801
 
 
 class ChainJntToJacSolver(_Solver):
-    """The Jacobian of a chain, for the base and the tip of the chain."""
+    """The Jacobian between the base and the tip of a chain."""
 
     def JntToJac(self, joints: JntArray, jacobian: Jacobian, segment: int = -1) -> int:  # noqa: N802
         """Write the Jacobian for a segment's tip, by default the last one; return an error code."""
@@ -97,7 +97,7 @@ class ChainIkSolverVel_pinv(_Solver):  # noqa: N801
 
 
 class ChainIkSolverPos_NR(_Solver):  # noqa: N801
-    """Joint values for a pose of the tip, by Newton-Raphson steps with a solver for speeds."""
+    """Joint values for a pose of the tip, by Newton-Raphson steps with a velocity solver."""
 
     def __init__(
         self,
@@ -111,7 +111,7 @@ class ChainIkSolverPos_NR(_Solver):  # noqa: N801
         self._forward, self._speeds, self._most, self._eps = fksolver, iksolver, maxiter, eps
 
     def CartToJnt(self, start: JntArray, pose: Frame, joints: JntArray) -> int:  # noqa: N802
-        """Write the joint values into `joints`, beginning at `start`; return an error code."""
+        """Write the joint values into `joints`, starting from `start`; return an error code."""
         if start.rows() != self.chain.getNrOfJoints() or joints.rows() != start.rows():
             return self._ended(SIZE_MISMATCH)
         joints.data[:] = start.data
@@ -160,7 +160,7 @@ class ChainIkSolverPos_LMA(_Solver):  # noqa: N801
         self._weights = np.array([1.0, 1.0, 1.0, 0.01, 0.01, 0.01])
 
     def CartToJnt(self, start: JntArray, pose: Frame, joints: JntArray) -> int:  # noqa: N802
-        """Write the joint values into `joints`, beginning at `start`; return an error code."""
+        """Write the joint values into `joints`, starting from `start`; return an error code."""
         size = self.chain.getNrOfJoints()
         if start.rows() != size or joints.rows() != size:
             return self._ended(SIZE_MISMATCH)
@@ -189,7 +189,7 @@ class ChainIkSolverPos_LMA(_Solver):  # noqa: N801
 
 
 def _poses(chain: Chain, joints: JntArray) -> list[Frame]:
-    """Return the poses of the base and of the tips of all segments."""
+    """Return the poses of the base and of all segment tips."""
     values = iter(joints.data)
     poses = [Frame()]
     for one in chain.segments:

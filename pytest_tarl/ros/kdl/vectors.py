@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, Final, TypeVar
 
 EPSILON: Final = 1e-6  # default tolerance of KDL
-WIDTH: Final = 12  # width of a number in a printed text (characters)
+WIDTH: Final = 12  # characters per number in printed text
 Six = TypeVar("Six", bound="_Six")
 
 
@@ -17,7 +17,7 @@ def shown(values: Any) -> str:
 
 
 class Vector:
-    """Three coordinates; `*` between two vectors is the cross product."""
+    """Three coordinates; `*` between vectors is the cross product."""
 
     __slots__ = ("_data",)
     __hash__ = None  # type: ignore[assignment]
@@ -59,7 +59,7 @@ class Vector:
         return math.hypot(*self._data) if max(map(abs, self._data)) >= eps else 0.0
 
     def Normalize(self, eps: float = EPSILON) -> float:  # noqa: N802
-        """Scale to length 1 and return the previous length; a vector shorter than `eps` becomes the x axis."""
+        """Scale to length 1 and return the old length; a vector shorter than `eps` becomes the x axis."""
         length = self.Norm()
         self._data = [1.0, 0.0, 0.0] if length < eps else [one / length for one in self._data]
         return length
@@ -126,7 +126,7 @@ class Vector:
 
 
 class _Six:
-    """Two vectors: a linear part and an angular part, which the subclasses name."""
+    """A linear and an angular vector, which subclasses name."""
 
     __slots__ = ("_one", "_two")
     __hash__ = None  # type: ignore[assignment]

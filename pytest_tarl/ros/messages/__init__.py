@@ -1,4 +1,4 @@
-"""ROS message and service classes: from an installed ROS, or built from definitions."""
+"""ROS message and service classes: those of an installed ROS, or built from definitions."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _BUILDERS: dict[tuple[Kind, Part], Callable[[str, str], type[Any] | None]] = {
 def message_type(name: str) -> type[Any]:
     """Return a message class by its ROS name.
 
-    `nav_msgs/Odometry` is the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class. ROS 1 and ROS 2 nodes can receive
-    messages of either class: a subscriber always gets an instance of the class that it subscribed with. The names of
-    services and actions have the same forms: `std_srvs/SetBool` (ROS 1), `std_srvs/srv/SetBool` and
-    `nav2_msgs/action/NavigateToPose` (ROS 2). The definitions may be in the repository of the file that calls this
-    function, even before any node is started.
+    `nav_msgs/Odometry` is the ROS 1 class, and `nav_msgs/msg/Odometry` the ROS 2 class. Nodes can receive messages of
+    either class: a subscriber always gets an instance of the class that it subscribed with. Names of services and
+    actions have the same forms: `std_srvs/SetBool` (ROS 1), `std_srvs/srv/SetBool` and
+    `nav2_msgs/action/NavigateToPose` (ROS 2). Definitions in the caller's repository are found even before any node is
+    started.
 
     Raise UnsupportedApiError if the type is unknown.
     """
@@ -49,7 +49,7 @@ def message_type(name: str) -> type[Any]:
 
 
 def _search_around(package: str, file: str | None) -> None:
-    """Search the repository of `file`, or else its folder, before all others, unless TARL itself knows the package."""
+    """Search the repository of `file` (or its folder) first, unless TARL itself knows the package."""
     root = None if not file or has_known_types(package) else _root_around(file)
     if root is not None:
         node_workspaces.prefer(root)
@@ -73,7 +73,7 @@ def find_class(kind: Kind, package: str, name: str, part: Part = "msg") -> type[
 
 
 def class_of(kind: Kind, name: str) -> type[Any]:
-    """Return the message class of a type name, `package/Name`. Raise UnsupportedApiError for an unknown type."""
+    """Return the message class of a type, `package/Name`. Raise UnsupportedApiError if it is unknown."""
     package, _, short = name.partition("/")
     found = find_class(kind, package, short)
     if found is None:

@@ -1,4 +1,4 @@
-"""Convert field values as a receiver gets them. Every function raises FieldError for an unsuitable value."""
+"""Convert field values to what a receiver gets. Every function raises FieldError for unsuitable values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CODES = {
 
 
 class FieldError(Exception):
-    """A field's value does not fit its type. The message of the error is the end of a sentence."""
+    """A field's value does not fit its type; the message is the end of a sentence."""
 
 
 def as_float(value: Any, field: str) -> float:
@@ -32,7 +32,7 @@ def as_float(value: Any, field: str) -> float:
 
 
 def as_float32(value: Any, field: str) -> float:
-    """Round a number to float32. Raise FieldError for other values, or if it is too large."""
+    """Round a number to float32. Raise FieldError for other values and for numbers that are too large."""
     try:
         rounded: float = _FLOAT32.unpack(_FLOAT32.pack(as_float(value, field)))[0]
     except OverflowError as error:
@@ -41,7 +41,7 @@ def as_float32(value: Any, field: str) -> float:
 
 
 def as_integer(value: Any, base: str, field: str) -> int:
-    """Return an integer that fits `base`. Raise FieldError for other values, including floats, as in ROS."""
+    """Return an integer that fits `base`. Raise FieldError for other values, including floats, as ROS does."""
     low, high = INTEGERS[base]
     try:
         number = operator.index(value)
@@ -72,7 +72,7 @@ def as_text(value: Any, field: str) -> str:
 
 
 def as_numbers(values: Iterable[Any], base: str, size: int, field: str) -> array[Any]:
-    """Return numbers packed as `base`; `size` 0 allows any length. Raise FieldError for a wrong length or type."""
+    """Return numbers packed as `base`; a `size` of 0 allows any length. Raise FieldError for a wrong length or type."""
     if isinstance(values, str) or not hasattr(values, "__len__"):
         raise FieldError(f"field {field!r} must be a sequence of {base}, not {values!r}")
     try:
@@ -95,7 +95,7 @@ def as_list(values: Any, size: int, field: str, convert: Callable[[Any, str], An
 
 
 def scalar_converter(base: str) -> Callable[[Any, str], Any]:
-    """Return the conversion for one element of a primitive type (other than ROS 1 times)."""
+    """Return the conversion for an element of a primitive type (other than ROS 1 times)."""
     if base in INTEGERS:
         return lambda value, field: as_integer(value, base, field)
     return {

@@ -1,4 +1,4 @@
-"""Find message packages of a real ROS in this environment, and their generation."""
+"""Find the message packages of an installed ROS in this environment, and their generation."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 
 from pytest_tarl.ros.messages.type_definitions import Kind
 
-_asked: list[Kind] = []  # ROS generations of the look-ups in progress, the innermost look-up last
+_asked: list[Kind] = []  # ROS generations of the look-ups in progress, innermost last
 
 
 @cache
 def installed_kind(package: str) -> Kind | None:
-    """Return the ROS generation that generated the installed Python package, or None if it is not installed.
+    """Return the ROS generation of the installed Python package, or None if it is not installed.
 
-    File names decide this without an import: genpy writes `msg/_Twist.py`, rosidl `msg/_twist.py`.
+    No import is needed, as file names differ: genpy writes `msg/_Twist.py`, rosidl `msg/_twist.py`.
     """
     spec = PathFinder.find_spec(package)
     if spec is None or spec.submodule_search_locations is None:
@@ -30,7 +30,7 @@ def installed_kind(package: str) -> Kind | None:
 
 
 def installed_class(kind: Kind, package: str, name: str, part: str) -> type[Any] | None:
-    """Return the class from an installed ROS of this generation, or None if there is none."""
+    """Return the class from an installed ROS of this generation, or None."""
     if installed_kind(package) != kind:
         return None
     _asked.append(kind)
@@ -42,5 +42,5 @@ def installed_class(kind: Kind, package: str, name: str, part: str) -> type[Any]
 
 
 def asked_kind() -> Kind | None:
-    """Return the generation of the class that is being looked up, or None if an import comes from elsewhere."""
+    """Return the generation of the class being looked up, or None if the import has another origin."""
     return _asked[-1] if _asked else None

@@ -1,7 +1,7 @@
-"""The workspaces of started nodes: their packages and message, service and action definitions.
+"""The workspaces of started nodes: packages, and definitions of messages, services and actions.
 
-If packages have the same name, the one in the workspace that was searched last counts. All caches of such facts are
-keyed by the order of the workspaces.
+If packages have the same name, the one in the most recently searched workspace wins. All caches of such facts are keyed
+by the order of the workspaces.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from tarl_lint.workspace.read import read
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
-# grows with the folders of started nodes, as sys.path does; the newest comes first
+# newest first; grows with the folders of started nodes, as sys.path does
 _SEARCHED: list[Path] = []
 
-_CACHES: list[Callable[[], None]] = []  # functions that clear caches of workspace facts
+_CACHES: list[Callable[[], None]] = []  # functions that clear caches of facts about workspaces
 
 _KEPT: set[Path] = set()  # folders of nodes in packages with COLCON_IGNORE or CATKIN_IGNORE
 
 
 def search(folder: Path, test: Path | None = None) -> None:
-    """Put the packages around `folder` first: those of its repository, or the enclosing ROS workspace.
+    """Put the packages around `folder` first: those of its repository, or of the ROS workspace around it.
 
-    If there is neither, take the packages in the folder of the test or, if it does not contain `folder`, in the folder
-    above. This is done only if the folder contains both definitions and `folder`.
+    If there is neither, use the packages in the test's folder or, if it does not contain `folder`, in the folder above.
+    This requires that the chosen folder contains definitions as well as `folder`.
     """
     root = root_around(folder, test)
     if root is None:
@@ -42,12 +42,12 @@ def search(folder: Path, test: Path | None = None) -> None:
 
 
 def root_around(folder: Path, test: Path | None = None) -> Path | None:
-    """Return the root that `search` would put first, or None if it would do nothing."""
+    """Return the root that `search` would put first, or None if there is none."""
     return workspace_root(folder.resolve()) or _around_test(folder.resolve(), test)
 
 
 def prefer(root: Path) -> None:
-    """Put a workspace first: its packages count, before others with the same names."""
+    """Put a workspace first, so that its packages win over others with the same names."""
     if root not in _SEARCHED:
         _SEARCHED.insert(0, root)
         forget()
@@ -57,31 +57,31 @@ def prefer(root: Path) -> None:
 
 
 def _around_test(folder: Path, test: Path | None) -> Path | None:
-    """Return the folder of a test, or else the folder above, that contains `folder`, if it has definitions."""
+    """Return the folder of a test, or the one above, if it contains `folder` and has definitions."""
     around = () if test is None else (test.resolve(), test.resolve().parent)
     nearest = next((one for one in around if folder.is_relative_to(one)), None)
     return nearest if nearest is not None and _has_definitions(nearest) else None
 
 
 def _has_definitions(folder: Path) -> bool:
-    """Return whether a folder contains definitions of messages, services or actions in packages below it."""
+    """Return whether packages below a folder define messages, services or actions."""
     patterns = (f"{above}/{kind}/*.{kind}" for above in ("*", "*/*") for kind in INTERFACES)
     return any(next(folder.glob(pattern), None) for pattern in patterns)
 
 
 def on_forget(clear: Callable[[], None]) -> None:
-    """Register a function that empties a cache of facts about the workspaces."""
+    """Register a function that clears a cache of facts about workspaces."""
     _CACHES.append(clear)
 
 
 def forget() -> None:
-    """Empty all caches of facts about the workspaces, which are then read again on next use."""
+    """Clear all caches of facts about workspaces, so that they are read again when needed."""
     for clear in _CACHES:
         clear()
 
 
 def by_order(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Cache the results of a function separately for each order of the workspaces; `forget` clears the cache."""
+    """Cache a function's results separately for each order of the workspaces, until `forget`."""
 
     @cache
     def known(_order: tuple[Path, ...], *arguments: Any, **named: Any) -> Result:
@@ -103,12 +103,12 @@ def _read(root: Path) -> Workspace:
 
 @by_order
 def workspaces() -> tuple[Workspace, ...]:
-    """Return descriptions of the workspaces; the workspace that was searched last comes first."""
+    """Return descriptions of the workspaces, the most recently searched one first."""
     return tuple(_read(root) for root in _SEARCHED)
 
 
 def workspace_around(path: Path) -> Workspace | None:
-    """Return the innermost workspace that contains a file or folder, or None if there is none."""
+    """Return the innermost workspace that contains a file or folder, or None."""
     around = [one for one in workspaces() if path.is_relative_to(one.root)]
     return max(around, key=lambda one: len(one.root.parts), default=None)
 

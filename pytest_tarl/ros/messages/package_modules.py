@@ -1,4 +1,4 @@
-"""Message packages as modules: `from geometry_msgs.msg import Twist` builds the class on first use."""
+"""Message packages as modules: `from geometry_msgs.msg import Twist` builds the class when it is first used."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _GENERATED = ("codecs", "genpy", "struct", "sys")
 def could_be_package(name: str) -> bool:
     """Return whether a name could be a message package.
 
-    The check must be cheap, because most imported modules are not message packages.
+    This check must be cheap, because most imported modules are not message packages.
     """
     return name.endswith(_ENDINGS) or name in _OTHERS or name in workspace_packages()
 
@@ -62,13 +62,13 @@ class PackagePart(ModuleType):
         return sorted([*names, *(name + half for name in names for half in halves)])
 
     def _modules(self) -> list[str]:
-        """Return the modules that `import *` also binds: those that genpy's modules of ROS 1 import."""
+        """Return the modules that `import *` also binds in ROS 1: the imports of genpy's modules."""
         if self._kind == "ros2":
             return []
         return sorted({*_GENERATED, *contained_packages(self._package, self._part)})
 
     def _half_of_service(self, name: str) -> Any:
-        """Return `SetBoolRequest` or `SetBoolResponse` of a ROS 1 service `SetBool`, or None for other names."""
+        """Return `SetBoolRequest` or `SetBoolResponse` for a ROS 1 service `SetBool`, or None for other names."""
         for suffix, attribute in (("Request", "_request_class"), ("Response", "_response_class")):
             if self._kind == "ros1" and self._part == "srv" and name.endswith(suffix):
                 return getattr(ros1.service_class(self._package, name.removesuffix(suffix)), attribute, None)
@@ -78,7 +78,7 @@ class PackagePart(ModuleType):
 class MessagePackage(ModuleType):
     """`package`.
 
-    The parts of the package are available without an explicit import, as in ROS, where messages import each other.
+    Its parts are available without an explicit import, as in ROS, where messages import each other.
     """
 
     def __init__(self, kind: Kind, package: str) -> None:
@@ -94,7 +94,7 @@ class MessagePackage(ModuleType):
 
 
 def package_module(kind: Kind, name: str) -> ModuleType | None:
-    """Create the module with that dotted name, or return None if it is not part of a message package."""
+    """Create the module with this dotted name, or return None if it does not belong to a message package."""
     package, _, part = name.partition(".")
     if not is_package(kind, package):
         return None

@@ -1,6 +1,6 @@
-"""ROS 1 message classes, generated from definitions, that behave like genpy's.
+"""ROS 1 message classes that are generated from definitions and behave like genpy's.
 
-Each class gets a function `_tarl_copy(message)`, which has the effect of sending and receiving: it checks types, rounds
+Each class gets a function `_tarl_copy(message)` with the effect of sending and receiving: it checks types, rounds
 float32, turns arrays of numbers into tuples (bytes for uint8), and shares nothing with the original.
 """
 
@@ -18,12 +18,12 @@ from pytest_tarl.ros.messages.node_workspaces import by_order
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
 from pytest_tarl.ros.messages.type_definitions import Definition, Field, find_message, find_service, identity
 
-# types without an installed class, built from the definition in a bag or a topic header
+# types without an installed class, built from a definition in a bag or a topic header
 CARRIED: dict[str, type[Message]] = {}
 
 
 class Message:
-    """Base of all ROS 1 messages; takes all fields by position, or any of them by keyword."""
+    """Base of all ROS 1 messages; takes all fields by position, or any fields by keyword."""
 
     __slots__ = ["_connection_header"]
     _type: ClassVar[str] = ""
@@ -59,7 +59,7 @@ class Message:
 
     @property
     def _buff(self) -> bytes:
-        """The serialised message, which a subscriber to any type receives on a robot."""
+        """Return the serialised message, which a subscriber to any type receives on a robot."""
         return ros1_wire.serialize(self)
 
     def __getstate__(self) -> list[Any]:
@@ -86,14 +86,14 @@ class Message:
 
 
 def _equal(one: Any, other: Any) -> bool:
-    """Compare two fields; a list can equal a tuple, since received messages hold tuples."""
+    """Compare two fields; lists can equal tuples, because received messages have tuples."""
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return tuple(one) == tuple(other)
     return bool(one == other)
 
 
 def _rebuild(name: str, state: list[Any]) -> Message:
-    """Unpickle a message by its type name, because its module exists only during an episode."""
+    """Unpickle a message by type name, because its module exists only during an episode."""
     built = field_class(name) or _service_part(name)
     if built is None:
         raise FieldError(f"message type {name} is not known")
@@ -137,9 +137,9 @@ _BUILT: dict[
 
 @by_order
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built on first use, or None if it is unknown.
+    """Return the class of a message type, built when first used, or None if it is unknown.
 
-    Workspaces with the same definition have the same class.
+    Workspaces with the same definition share a class.
     """
     definition = find_message("ros1", package, name)
     if definition is None:
@@ -151,13 +151,13 @@ def message_class(package: str, name: str) -> type[Message] | None:
 
 
 def field_class(base: str) -> type[Message] | None:
-    """Return the class of a message type by its full name, including parts of services and actions."""
+    """Return the class of a message type by full name, including parts of services and actions."""
     return message_class(*base.split("/", 1)) or CARRIED.get(base)
 
 
 @by_order
 def service_class(package: str, name: str) -> type | None:
-    """Return the class of a service type, with its request and response classes as attributes."""
+    """Return the class of a service type; its request and response classes are attributes."""
     halves = find_service("ros1", package, name)
     if halves is None:
         return None
@@ -265,7 +265,7 @@ def _nested(base: str) -> type[Message]:
 
 
 def _copy_lines(field: Field, position: int, scope: dict[str, Any]) -> list[str]:
-    """Return source lines that copy one field: a value of the exact type inline, any other value by calling `slow`."""
+    """Return source lines that copy a field: inline for a value of the exact type, otherwise by calling `slow`."""
     name, slow = field.name, f"slow{position}(v, {field.name!r})"
     exact = {"float64": "float", "string": "str", "bool": "bool"}.get(field.base)
     if field.shape == "one" and not field.primitive:
@@ -300,7 +300,7 @@ def _converter(field: Field) -> Callable[[Any, str], Any]:
 
 
 def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
-    last: Any = ()  # the last result; a tuple of numbers is immutable, so it can be reused
+    last: Any = ()  # the last result, which can be reused because a tuple of numbers is immutable
 
     def convert(value: Any, name: str) -> Any:
         nonlocal last
@@ -314,7 +314,7 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
 
 
 def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    """Return a conversion that reuses the last result if the bytes are equal, because covariances rarely change."""
+    """Return a conversion that reuses the last result for equal bytes, because covariances rarely change."""
     pack = Struct(f"{size}d").pack
     last: tuple[bytes, Any] = (b"", ())
 
@@ -327,7 +327,7 @@ def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[An
         try:
             content = pack(*value)
         except StructError:
-            return convert(value, name)  # this call raises the error with the reason
+            return convert(value, name)  # this raises the error with the reason
         if content != last[0]:
             last = (content, convert(value, name))
         return last[1]

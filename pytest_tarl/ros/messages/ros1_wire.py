@@ -1,4 +1,4 @@
-"""Serialise ROS 1 messages: little-endian fields in order, lengths as uint32.
+"""Serialise ROS 1 messages: little-endian fields in order, with lengths as uint32.
 
 Format: https://wiki.ros.org/msg, "Array handling" and "Primitive types".
 """
@@ -22,20 +22,20 @@ Find = Callable[[str], Any]
 
 
 class WireError(ValueError):
-    """The bytes are not a message of the type."""
+    """The bytes are not a message of this type."""
 
 
 def serialize(message: Any) -> bytes:
-    """Serialise a message. Raise FieldError for a value that its field's type does not allow."""
+    """Serialise a message. Raise FieldError for a value that does not fit its field."""
     parts: list[bytes] = []
-    # message classes of an installed ROS lack `_tarl_copy`, because they check values when they serialise
+    # classes of an installed ROS have no `_tarl_copy`, because they check values when they serialise
     copied = getattr(type(message), "_tarl_copy", None)
     _write_message(message if copied is None else copied(message), parts)
     return b"".join(parts)
 
 
 def deserialize(kind: Any, data: bytes, find: Find) -> Any:
-    """Deserialise a message of a class; `find` returns a nested class by its type name.
+    """Deserialise a message of a class; `find` returns a nested class by type name.
 
     Raise WireError if there are too few or too many bytes.
     """
@@ -49,7 +49,7 @@ def deserialize(kind: Any, data: bytes, find: Find) -> Any:
 
 
 def full_text(kind: Any) -> str:
-    """Return the definition of a message type with those of all nested types, as stored in bags."""
+    """Return the definition of a message type and of all nested types, as stored in bags."""
     texts: dict[str, str] = {}
     pending = [kind._type]
     while pending:
@@ -116,7 +116,7 @@ def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     count = int(size.rstrip("]") or 0)
     if size == "]":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
-    # each element takes at least one byte, unless its message is empty
+    # each element takes at least one byte, unless its type is empty
     if count > len(data):
         raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
     if base in ("uint8", "char"):

@@ -1,7 +1,7 @@
-"""ROS 2 message classes, generated from definitions, that behave like rosidl's.
+"""ROS 2 message classes that are generated from definitions and behave like rosidl's.
 
-Fields are properties whose setters assert the type, so that `twist.linear.x = 1` fails here as on the robot.
-Sequences of numbers are `array.array`, arrays of numbers are numpy arrays, as in rosidl.
+Fields are properties whose setters assert the type, so `twist.linear.x = 1` fails here as on a robot. As in rosidl,
+sequences of numbers are `array.array`, and fixed arrays of numbers are numpy arrays.
 """
 
 # ruff: noqa: S101 (rosidl's setters assert, and `python -O` switches them off there as well)
@@ -42,7 +42,7 @@ class Message:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return field names and types as in the message file."""
+        """Return field names and types, as in the message file."""
         return dict(cls._fields_and_field_types)
 
     def __repr__(self) -> str:
@@ -74,14 +74,14 @@ class Message:
 
 
 def _rebuild(module: str, name: str, fields: dict[str, Any]) -> Message:
-    """Unpickle a message, possibly in another process, where the class may not have been built yet."""
+    """Unpickle a message; in another process, its class may not have been built yet."""
     package, _, part = module.partition(".")
     built = _nested(f"{package}/{name}") if part == "msg" else _part(package, name, part)
     return built(**fields)
 
 
 def _part(package: str, name: str, part: str) -> type[Message]:
-    """Return the class of a part of a service or action by its name, such as `SetBool_Request`."""
+    """Return the class of a part of a service or action, such as `SetBool_Request`, by name."""
     whole = (
         service_class(package, name.rpartition("_")[0])
         if part == "srv"
@@ -113,9 +113,9 @@ _BUILT: dict[tuple[str, str, str], type[Any]] = {}
 
 @by_order
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built on first use, or None if it is unknown.
+    """Return the class of a message type, built when first used, or None if it is unknown.
 
-    Workspaces with the same definition have the same class.
+    Workspaces with the same definition share a class.
     """
     definition = find_message("ros2", package, name)
     if definition is None:
@@ -222,17 +222,17 @@ def build(definition: Definition, module: str) -> type[Message]:
 
 
 def _constant(constant: Constant) -> Any:
-    """Return the value of a constant; rosidl makes those of type `byte` a `bytes` object of length 1."""
+    """Return a constant's value; rosidl makes a `byte` a `bytes` object of length 1."""
     return bytes([constant.value]) if constant.text.split()[0] in ("byte", "octet") else constant.value
 
 
 PACKED = frozenset(CODES) - {"byte"}  # types that rosidl stores in an `array.array`
 _UNSET = object()
-_parts: dict[str, type[Message]] = {}  # parts of services and actions; transport messages need them
+_parts: dict[str, type[Message]] = {}  # parts of services and actions, which transport messages need
 
 
 def _init_lines(fields: list[Field]) -> list[str]:
-    """Return source lines of the constructor: a keyword with a default for each field."""
+    """Return the source lines of the constructor: a keyword with a default for each field."""
     if any(keyword.iskeyword(field.name) or field.name in ("self", "unknown") for field in fields):
         defaults = [f"    self._{field.name} = default{position}()" for position, field in enumerate(fields)]
         return ["def __init__(self, **unknown):", *defaults, "    fill(self, unknown)"]
@@ -244,7 +244,7 @@ def _init_lines(fields: list[Field]) -> list[str]:
     for position, field in enumerate(fields):
         plain = LITERALS.get(field.base) if field.shape == "one" and field.default is None else None
         lines.append(f"    if {field.name} is UNSET: self._{field.name} = {plain or f'default{position}()'}")
-        code = _packed_code(field)  # rosidl's constructors convert the value to an array; its setters do not
+        code = _packed_code(field)  # rosidl's constructors, unlike its setters, convert the value to an array
         given = f"array({code!r}, {field.name})" if code else field.name
         lines.append(f"    else: self.{field.name} = {given}")
     return lines
@@ -257,7 +257,7 @@ def _packed_code(field: Field) -> str:
 
 def _fill(message: Message, given: dict[str, Any]) -> None:
     names = {field.name: _packed_code(field) for field in message._tarl_fields}
-    given.pop("check_fields", None)  # option of newer rosidl; TARL always checks the fields
+    given.pop("check_fields", None)  # an option of newer rosidl; TARL always checks the fields
     assert all(key in names for key in given), "Invalid arguments passed to constructor: " + ", ".join(
         sorted(key for key in given if key not in names)
     )

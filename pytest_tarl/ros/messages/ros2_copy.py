@@ -1,4 +1,4 @@
-"""Generate the function that copies a ROS 2 message, with nested messages inline for speed."""
+"""Generate the function that copies a ROS 2 message; nested messages are inline for speed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Scope = dict[str, Any]
 
 
 def copy_function(fields: Iterable[Field], nested: Nested, scope: Scope) -> list[str]:
-    """Return the source of `copy(m)`; put its globals into `scope`, where the caller sets `cls`."""
+    """Return the source of `copy(m)`; put its globals into `scope`, to which the caller adds `cls`."""
     return [
         "def copy(m):",
         "    n = new(cls)",
@@ -59,7 +59,7 @@ def _copier(field: Field, nested: Nested) -> Callable[[Any], Any]:
     if not field.primitive:
         element = nested(field.base)._tarl_copy
         return lambda value: [element(item) for item in value]
-    # a field with one value is sent unchanged, except that a float32 is rounded
+    # a single value is sent unchanged, except that float32 is rounded
     if field.shape == "one":
         return lambda value: field_values.as_float32(value, field.name)
     if field.base in CODES and field.base != "byte":

@@ -11,9 +11,9 @@ from typing import Any
 from pytest_tarl.ros.messages.field_values import CODES, INTEGERS
 from pytest_tarl.ros.messages.type_definitions import Field
 
-Nested = Callable[[str], type]  # returns a nested message class by its type name
+Nested = Callable[[str], type]  # type name → nested message class
 
-_FLOAT32_LIMIT = 3.402823466e38  # rosidl's rounded limit, which excludes the largest float32
+_FLOAT32_LIMIT = 3.402823466e38  # rosidl's limit is rounded and excludes the largest float32
 LITERALS = {
     "float64": "0.0", "float32": "0.0", "bool": "False", "string": "''", "wstring": "''",
     **dict.fromkeys(set(INTEGERS) - {"byte"}, "0"),
@@ -71,7 +71,7 @@ def setter(field: Field, position: int, nested: Nested, scope: dict[str, Any], s
 
 
 def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
-    """Check an assigned sequence and convert it to the form that rosidl stores."""
+    """Check an assigned sequence, and convert it to the form in which rosidl stores it."""
     packed = field.base in CODES and field.base != "byte"
     if packed and field.shape == "array" and hasattr(value, "dtype"):
         assert value.dtype.name == field.base, (
@@ -89,7 +89,7 @@ def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
     assert isinstance(value, Sequence | set) and not isinstance(value, str), (  # noqa: PT018
         f"The '{field.name}' field must be a sequence of {field.base}, not {type(value).__name__}"
     )
-    # the elements of bytes need no check
+    # elements of bytes need no check
     if field.base != "uint8" or not isinstance(value, bytes | bytearray):
         for element in value:
             check(element)

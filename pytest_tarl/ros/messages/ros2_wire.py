@@ -17,7 +17,7 @@ _FORM = re.compile(
 
 
 class _Field(NamedTuple):
-    """A field: the type of its elements, and their number (1, the length of an array, or None for a sequence)."""
+    """A field: its element type, and the number of elements (1, an array's length, or None for a sequence)."""
 
     name: str
     base: str
@@ -56,7 +56,7 @@ def serialize(message: Any) -> bytes:
 
 
 def deserialize(data: bytes, kind: type[Any]) -> Any:
-    """Return the message of class `kind` that the bytes encode. Raise ValueError if they are not little-endian CDR."""
+    """Return the message of class `kind` in these bytes. Raise ValueError if they are not little-endian CDR."""
     if bytes(data[:2]) != _HEADER[:2]:
         raise ValueError("the bytes are not a message in little-endian CDR")
     try:
@@ -111,7 +111,7 @@ def _write_one(out: bytearray, base: str, element: Any) -> None:
 
 
 class _Reader:
-    """Read values one after the other."""
+    """Read values one after another."""
 
     def __init__(self, data: memoryview) -> None:
         self._data = data

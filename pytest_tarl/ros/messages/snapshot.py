@@ -1,4 +1,4 @@
-"""Copy messages as a receiver gets them: checked, and in the receiver's class."""
+"""Copy messages to what a receiver gets: checked, and in the receiver's class."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages import find_class, unknown_type
 from pytest_tarl.ros.messages.field_values import FieldError, as_float32
 
-_COPIERS: dict[type, Callable[[Any], Any]] = {}  # copier of each message class; entries never change
+_COPIERS: dict[type, Callable[[Any], Any]] = {}  # message class → copier; entries never change
 _STAMPS: dict[
     type, tuple[str, str] | None
-] = {}  # names of the stamp's parts in a class's header; entries never change
+] = {}  # class → names of the stamp's parts in the header; entries never change
 
 
 def snapshot(message: Any, wanted: type | None = None) -> Any:
-    """Copy a message for a receiver of class `wanted` (None: the same class). Raise FieldError if that fails."""
+    """Copy a message for a receiver of class `wanted` (None: the same class). Raise FieldError if it does not fit."""
     own = type(message)
     if wanted is not None and wanted is not own:
         if type_name(wanted) != type_name(own):
@@ -32,7 +32,7 @@ def snapshot(message: Any, wanted: type | None = None) -> Any:
 
 
 def type_name(message_type: Any) -> str:
-    """Return the type name of a class, `nav_msgs/Odometry`, in the same form for both ROS generations."""
+    """Return the type name of a class, such as `nav_msgs/Odometry`, in the same form for both ROS generations."""
     if hasattr(message_type, "_slot_types"):
         return str(message_type._type)
     package = getattr(message_type, "__module__", "").partition(".")[0]
@@ -51,7 +51,7 @@ def field_names(message: Any) -> tuple[str, ...]:
 
 
 def translate(message: Any, wanted: type) -> Any:
-    """Convert a message, field by field, to the class of the same type in the other ROS generation."""
+    """Convert a message field by field to the class of the same type in the other ROS generation."""
     made = wanted()
     for name in field_names(wanted):
         if hasattr(message, name):
@@ -72,7 +72,7 @@ def _translated(value: Any, template: Any, wanted: type) -> Any:
 
 
 def _class_like(own: type, other: type) -> type[Any]:
-    """Return the class of `own`'s type in the ROS generation of `other`. Raise UnsupportedApiError if there is none."""
+    """Return the class of the same type in the ROS generation of `other`. Raise UnsupportedApiError."""
     package, _, short = type_name(own).partition("/")
     found = find_class("ros1" if hasattr(other, "_slot_types") else "ros2", package, short)
     if found is None:
@@ -89,7 +89,7 @@ def is_message(value: Any) -> bool:
 
 
 def stamp_if_unset(message: Any, now: int) -> None:
-    """Set the header stamp of `message` to the current time (ns) unless it has one."""
+    """Set the header stamp of `message` to the current time (ns), unless it is already set."""
     own = type(message)
     if own not in _STAMPS:
         _STAMPS[own] = _stamp_parts(message)
@@ -116,7 +116,7 @@ def _stamp_parts(message: Any) -> tuple[str, str] | None:
 
 
 def _copier(own: type) -> Callable[[Any], Any]:
-    """Return the copy function of a class; a class of an installed ROS 1 is copied by serialisation.
+    """Return the copy function of a class; classes of an installed ROS 1 are copied by serialisation.
 
     Raise FieldError if the class is not a message class.
     """
@@ -133,7 +133,7 @@ def _copier(own: type) -> Callable[[Any], Any]:
 
 
 def _slot_copier(own: type) -> Callable[[Any], Any]:
-    """Return the copy function of an installed ROS 2 class: slot by slot, sharing immutable values."""
+    """Return the copy function for a class of an installed ROS 2: slot by slot, sharing immutable values."""
     slots = [slot for base in reversed(own.__mro__) for slot in getattr(base, "__slots__", ())]
     singles = {f"_{name}" for name, kind in own.get_fields_and_field_types().items() if kind == "float"}  # type: ignore[attr-defined]
 

@@ -1,6 +1,6 @@
-"""ROS 1 instants and durations (`genpy.Time`, `genpy.Duration`): whole seconds and nanoseconds.
+"""ROS 1 times and durations (`genpy.Time`, `genpy.Duration`): whole seconds and nanoseconds.
 
-Arithmetic returns the class of its left operand, so that `rospy.Duration` is preserved.
+Arithmetic returns the class of the left operand, so that a `rospy.Duration` remains one.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ Self = TypeVar("Self", bound="TVal")
 
 def _split(seconds: float) -> tuple[int, int]:
     whole = int(seconds)
-    return whole, int((seconds - whole) * NANOSECONDS)  # genpy truncates nanoseconds too
+    return whole, int((seconds - whole) * NANOSECONDS)  # genpy also truncates nanoseconds
 
 
 class TVal:
-    """Seconds and nanoseconds, kept so that 0 <= nsecs < 1e9."""
+    """Seconds and nanoseconds, normalised so that 0 <= nsecs < 1e9."""
 
     __slots__ = ["nsecs", "secs"]
     _slot_types: ClassVar[list[str]] = ["int32", "int32"]
@@ -105,7 +105,7 @@ class TVal:
 
 
 class Time(TVal):
-    """An instant, never negative."""
+    """A time, never negative."""
 
     __slots__ = ["nsecs", "secs"]
 

@@ -1,4 +1,4 @@
-"""Definitions of message types: from `rosbags`, from the workspace, and some built in."""
+"""Definitions of message types: from `rosbags`, from the workspace, and built in."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Shape = Literal["one", "array", "sequence"]
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {  # default values in common packages, which rosbags drops
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
-# dummy member of ROS 2 types without fields; programs do not see it
+# dummy member of ROS 2 types without fields, which programs do not see
 _FILLER = "structure_needs_at_least_one_member"
 _PRIMITIVES = frozenset(
     [
@@ -46,7 +46,7 @@ _PRIMITIVES = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One field. `base` is a primitive or `package/Name`; `size` is the length of an array."""
+    """A field; `base` is a primitive type or `package/Name`, and `size` is the length of an array."""
 
     name: str
     base: str
@@ -56,7 +56,7 @@ class Field:
 
     @property
     def primitive(self) -> bool:
-        """Return whether the elements are numbers, strings or (ROS 1) times."""
+        """Return whether the elements are numbers, strings or (in ROS 1) times."""
         return self.base in _PRIMITIVES
 
     @property
@@ -67,7 +67,7 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A named constant of a message type; `text` is its line in the text for ROS 1 checksums."""
+    """A named constant of a message type; `text` is its line in the text of the ROS 1 checksum."""
 
     name: str
     value: Any
@@ -123,10 +123,10 @@ def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Defini
 
 
 def identity(definitions: Iterable[Definition]) -> str:
-    """Return the text that identifies the class of a message, or the classes of a service or action.
+    """Return a text that identifies the class of a message, or the classes of a service or action.
 
-    The text contains the definitions, and the definitions of all messages in their fields, because two workspaces may
-    define the same name differently.
+    It consists of the definitions and of those of all messages in their fields, because two workspaces may define the
+    same name differently.
     """
     own = [*definitions]
     inside: dict[str, Definition | None] = {}
@@ -139,7 +139,7 @@ def identity(definitions: Iterable[Definition]) -> str:
     return repr((own, sorted(inside.items())))
 
 
-_ACTION_MESSAGES = {  # messages that genaction makes for an action, outermost last
+_ACTION_MESSAGES = {  # messages that genaction generates for an action, outermost last
     "Goal": None,
     "Result": None,
     "Feedback": None,
@@ -162,7 +162,7 @@ def _part_of_action(package: str, name: str) -> Definition | None:
 
 
 def _text(kind: Kind, part: Part, name: str) -> str | None:
-    """Return a definition from the user's workspace, or else from the known types."""
+    """Return a definition: from the user's workspace or, if it has none, from the known types."""
     return workspace_types(part).get(name) or known_types(kind, part).get(name)
 
 
@@ -188,7 +188,7 @@ def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
 
 @by_order
 def contained_packages(package: str, part: Part) -> frozenset[str]:
-    """Return the packages of all message types in the fields of a ROS 1 package's types, at any depth."""
+    """Return the packages of all message types that a ROS 1 package's types contain, at any depth."""
     pending = [one for name in type_names("ros1", package, part) for one in _halves(package, name, part)]
     seen: set[str] = set()
     while pending:
@@ -217,7 +217,7 @@ def has_known_types(package: str) -> bool:
 
 @cache
 def _fixed_names(kind: Kind, package: str, part: Part) -> frozenset[str]:
-    """Return the names of types that do not depend on the user's workspace."""
+    """Return the names of the types that do not come from the user's workspace."""
     shipped = _store(kind) if part == "msg" else {}
     names = (name for table in (shipped, known_types(kind, part)) for name in table)
     return frozenset(name.rpartition("/")[2] for name in names if name.startswith(f"{package}/"))
@@ -260,7 +260,7 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
 
 
 def _without_comment(kind: Kind, line: str) -> str:
-    """Remove the comment, except in a ROS 1 string constant, where `#` belongs to the value."""
+    """Remove the comment; in a ROS 1 string constant, `#` belongs to the value."""
     head = line.split("#")[0]
     return (line if kind == "ros1" and head.lstrip().startswith("string ") and "=" in head else head).strip()
 

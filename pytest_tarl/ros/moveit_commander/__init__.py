@@ -1,8 +1,8 @@
-"""Stand-in for `moveit_commander`: motions in joint space without obstacles. Pick, place and meshes are missing."""
+"""Stand-in for `moveit_commander`: motions in joint space, without obstacles, pick, place and meshes."""
 
 from __future__ import annotations
 
-import os  # imported here because nodes call moveit_commander.os._exit
+import os  # for nodes that call moveit_commander.os._exit
 from collections.abc import Sequence
 
 from pytest_tarl.ros.moveit_commander import conversions
@@ -16,8 +16,8 @@ __all__ = ["MoveGroupCommander", "MoveItCommanderException", "PlanningSceneInter
 
 
 def roscpp_initialize(args: Sequence[str]) -> None:
-    """Accept the command line; rospy alone connects the node."""
+    """Accept the command line; the node connects through rospy alone."""
 
 
 def roscpp_shutdown() -> None:
-    """Do nothing; rospy alone disconnects the node."""
+    """Do nothing; the node disconnects through rospy alone."""

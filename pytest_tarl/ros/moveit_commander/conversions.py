@@ -19,7 +19,7 @@ def pose_to_list(pose_msg: Any) -> list[float]:
 
 
 def list_to_pose(pose_list: Sequence[float]) -> Any:
-    """Return the pose of x, y, z and a quaternion, or of x, y, z, roll, pitch and yaw.
+    """Return the pose for x, y, z and a quaternion, or for x, y, z, roll, pitch and yaw.
 
     Raise MoveItCommanderException for a list of another length.
     """
@@ -40,7 +40,7 @@ def list_to_pose(pose_list: Sequence[float]) -> Any:
 
 
 def list_to_pose_stamped(pose_list: Sequence[float], target_frame: str) -> Any:
-    """Return the pose of a list, in a frame at the current time."""
+    """Return the pose for a list, stamped with a frame and the current time."""
     from pytest_tarl.ros.rospy.timing import Time
 
     stamped: Any = class_of("ros1", "geometry_msgs/PoseStamped")()

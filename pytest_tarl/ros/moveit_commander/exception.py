@@ -4,4 +4,4 @@ from __future__ import annotations
 
 
 class MoveItCommanderException(Exception):  # noqa: N818 (the library's name)
-    """An argument or a request that moveit_commander refuses."""
+    """moveit_commander rejects an argument or a request."""

@@ -1,4 +1,4 @@
-"""Motions of moveit_commander: straight lines in joint space, and their execution as by MoveIt's fake controllers."""
+"""Motions of moveit_commander: straight lines in joint space, executed as by MoveIt's fake controllers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.ros.rospy.timing import Duration, Time, sleep
 from pytest_tarl.ros.rospy.topics import Publisher, Subscriber
 
 FAKE: Final = "move_group/fake_controller_joint_states"
-_PERIOD: Final = 0.1  # time between the points of a trajectory (s)
+_PERIOD: Final = 0.1  # seconds between the points of a trajectory
 _MODELLED: Final = (
     "moveit_commander: motions are straight lines in joint space at the speed limits of the joints, published on "
     f"{FAKE}, as by MoveIt's fake controllers; obstacles and accelerations are not considered."
@@ -26,7 +26,7 @@ UNDESCRIBED: Final = (
 
 
 class Motions:
-    """The robot of one process: its model, and the state of its joints from `joint_states` or from the last motion."""
+    """The robot of a process: its model, and the state of its joints, from `joint_states` or the last motion."""
 
     def __init__(self, process: Process) -> None:
         self._process = process
@@ -44,7 +44,7 @@ class Motions:
         return current_process("moveit_commander").part(cls)
 
     def model(self, description: str) -> RobotModel | None:
-        """Return the robot of the description; if there is no description, add a note for the user and return None."""
+        """Return the robot in the description; without one, add a note for the user and return None."""
         if description not in self._models:
             names = (description, f"{description}_semantic")
             self._models[description] = described({one: get_param(one, None) for one in names}, description)
@@ -55,7 +55,7 @@ class Motions:
         return model
 
     def state(self, model: RobotModel | None) -> dict[str, float]:
-        """Return the values of all joints; a joint without a received value is at 0."""
+        """Return the values of all joints; 0 for a joint without a received value."""
         names = model.joints if model is not None else ()
         return {name: self._state.get(name, 0.0) for name in names}
 
@@ -92,7 +92,7 @@ class Motions:
 def straight(
     model: RobotModel, start: Mapping[str, float], goals: Sequence[Mapping[str, float]], share: float
 ) -> Any:
-    """Return a JointTrajectory through joint values, at `share` of the speed limits of the joints."""
+    """Return a JointTrajectory through joint values, at the share `share` of the joints' speed limits."""
     names = list(goals[0]) if goals else []
     trajectory: Any = class_of("ros1", "trajectory_msgs/JointTrajectory")()
     trajectory.header.frame_id, trajectory.joint_names = model.planning_frame, names

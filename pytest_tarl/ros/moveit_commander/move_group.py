@@ -29,10 +29,10 @@ _SETTINGS: Final = {
 
 
 class MoveGroupCommander(Targets):
-    """A group of joints, described by `robot_description` and `robot_description_semantic`.
+    """A group of joints from `robot_description` and `robot_description_semantic`.
 
-    Without these parameters, a group can be created, but no plan succeeds. Settings of the planner are kept and have no
-    effect.
+    Without these parameters, a group can be created, but planning fails. Settings of the planner are stored, but have
+    no effect.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class MoveGroupCommander(Targets):
         self._settings: dict[str, Any] = dict(_SETTINGS)
         kind = class_of("ros1", "moveit_msgs/AttachedCollisionObject")
         self._attached = Publisher("attached_collision_object", kind, queue_size=1)
-        self._share = 1.0  # share of the joints' speed limits at which motions run
+        self._share = 1.0  # share of the joints' speed limits for motions
         self._constraints: Any = class_of("ros1", "moveit_msgs/Constraints")()
 
     def plan(self, joints: Any = None) -> tuple[bool, Any, float, Any]:
@@ -62,13 +62,13 @@ class MoveGroupCommander(Targets):
         return code == SUCCESS, trajectory, 0.0, codes
 
     def go(self, joints: Any = None, wait: bool = True) -> bool:
-        """Plan to the target and execute the plan; return whether the target is reached."""
+        """Plan to the target and execute the plan; return whether the target was reached."""
         self._start = None
         succeeded, trajectory, _, _ = self.plan(joints)
         return self.execute(trajectory, wait=wait) if succeeded else False
 
     def execute(self, plan_msg: Any, wait: bool = True) -> bool:
-        """Execute a RobotTrajectory; return whether it reached its end."""
+        """Execute a RobotTrajectory; return whether its end was reached."""
         trajectory = plan_msg.joint_trajectory
         if not trajectory.points or self._model is None:
             return False
@@ -84,9 +84,9 @@ class MoveGroupCommander(Targets):
     def compute_cartesian_path(
         self, waypoints: Sequence[Any], eef_step: float, *options: Any, **_named: Any
     ) -> tuple[Any, float]:
-        """Return the trajectory of the link along straight lines through poses, and the covered fraction of the path.
+        """Return the link's trajectory along straight lines through poses, and the covered fraction.
 
-        It ends at the last reachable pose. Raise MoveItCommanderException for a step that is not positive.
+        The trajectory ends at the last reachable pose. Raise MoveItCommanderException if the step is not positive.
         """
         if eef_step <= 0 or any(isinstance(one, float | int) and one < 0 for one in options[:1]):
             raise MoveItCommanderException("The step of a Cartesian path must be positive.")
@@ -113,7 +113,7 @@ class MoveGroupCommander(Targets):
     def retime_trajectory(
         self, ref_state_in: Any, traj_in: Any, velocity_scaling_factor: float = 1.0, *_: Any, **__: Any
     ) -> Any:
-        """Return a trajectory at a part of the speed limits of the joints."""
+        """Return a trajectory at a share of the joints' speed limits."""
         points = [dict(zip(traj_in.joint_trajectory.joint_names, one.positions, strict=True))
                   for one in traj_in.joint_trajectory.points]  # fmt: skip
         retimed: Any = class_of("ros1", "moveit_msgs/RobotTrajectory")()
@@ -139,7 +139,7 @@ class MoveGroupCommander(Targets):
             self.set_joint_value_target(joints)
 
     def _goal_of_plan(self) -> tuple[int, dict[str, float] | None]:
-        """Return an error code, and the joint values of the target."""
+        """Return an error code and the target's joint values."""
         if self._model is None:
             return FAILED, None
         if self._pose is not None:
@@ -150,13 +150,13 @@ class MoveGroupCommander(Targets):
         return SUCCESS, {name: self._goal[name] for name in self._group.joints}
 
     def set_max_velocity_scaling_factor(self, value: float) -> None:
-        """Set the share of the speed limits. Raise MoveItCommanderException outside (0, 1]."""
+        """Set the share of the speed limits. Raise MoveItCommanderException unless it is in (0, 1]."""
         if not 0 < value <= 1:
             raise MoveItCommanderException("Expected value in the range from 0 to 1 for scaling factor")
         self._share = value
 
     def set_max_acceleration_scaling_factor(self, value: float) -> None:
-        """Raise MoveItCommanderException outside (0, 1]; accelerations are not considered."""
+        """Raise MoveItCommanderException unless the value is in (0, 1]; accelerations are not modelled."""
         if not 0 < value <= 1:
             raise MoveItCommanderException("Expected value in the range from 0 to 1 for scaling factor")
 
@@ -176,7 +176,7 @@ class MoveGroupCommander(Targets):
         return self._constraints
 
     def set_path_constraints(self, value: Any) -> None:
-        """Keep constraints, which have no effect."""
+        """Store constraints, which have no effect."""
         self._constraints = value if value is not None else class_of("ros1", "moveit_msgs/Constraints")()
 
     def clear_path_constraints(self) -> None:
@@ -184,7 +184,7 @@ class MoveGroupCommander(Targets):
         self.set_path_constraints(None)
 
     def attach_object(self, object_name: str, link_name: str = "", touch_links: Sequence[str] = ()) -> bool:
-        """Publish that an object is attached to a link, without effect on plans; return True."""
+        """Publish that an object is attached to a link, which has no effect on plans; return True."""
         self._attach(object_name, link_name or self._tip, touch_links, operation=0)
         return True
 
@@ -200,22 +200,22 @@ class MoveGroupCommander(Targets):
         self._attached.publish(attached)
 
     def allow_replanning(self, value: bool) -> None:
-        """Accept a setting without effect."""
+        """Accept the setting, which has no effect."""
 
     def allow_looking(self, value: bool) -> None:
-        """Accept a setting without effect."""
+        """Accept the setting, which has no effect."""
 
     def set_num_planning_attempts(self, num_planning_attempts: int) -> None:
-        """Accept a setting without effect."""
+        """Accept the setting, which has no effect."""
 
     def set_workspace(self, ws: Sequence[float]) -> None:
-        """Accept a setting without effect."""
+        """Accept the setting, which has no effect."""
 
     def set_support_surface_name(self, value: str) -> None:
-        """Accept a setting without effect."""
+        """Accept the setting, which has no effect."""
 
     def __getattr__(self, name: str) -> Any:
-        """Return the accessor of a setting: `get_planning_time()`, `set_planner_id("…")`."""
+        """Return the accessor of a setting, such as `get_planning_time()` or `set_planner_id("…")`."""
         action, _, setting = name.partition("_")
         settings = self.__dict__.get("_settings", {})
         if setting in settings and action == "get":

@@ -13,7 +13,7 @@ __all__ = ["RobotCommander"]
 
 
 class RobotCommander:
-    """The robot of `robot_description` and `robot_description_semantic`; without them, it has no groups."""
+    """The robot in `robot_description` and `robot_description_semantic`; without them, it has no groups."""
 
     def __init__(self, robot_description: str = "robot_description", ns: str = "") -> None:  # noqa: ARG002
         self._description = robot_description
@@ -38,7 +38,7 @@ class RobotCommander:
         return list(self._model.groups) if self._model is not None else []
 
     def get_default_owner_group(self, joint_name: str) -> str | None:
-        """Return the smallest group with a joint, or None."""
+        """Return the smallest group that has a joint, or None."""
         groups = self._model.groups.values() if self._model is not None else ()
         owners = [one for one in groups if joint_name in one.joints]
         return min(owners, key=lambda one: len(one.joints)).name if owners else None
@@ -56,7 +56,7 @@ class RobotCommander:
         return self._motions.state(self._model)
 
     def get_joint_names(self, group: str | None = None) -> list[str]:
-        """Return the joints that move, of all or of a group. Raise MoveItCommanderException for an unknown group."""
+        """Return the moving joints of the robot or a group. Raise MoveItCommanderException for an unknown group."""
         if group is None:
             return list(self._model.joints) if self._model is not None else []
         return list(self._of(group).joints)
@@ -64,7 +64,7 @@ class RobotCommander:
     get_active_joint_names = get_joint_names
 
     def get_link_names(self, group: str | None = None) -> list[str]:
-        """Return the links of the robot or of a group. Raise MoveItCommanderException for an unknown one."""
+        """Return the links of the robot or a group. Raise MoveItCommanderException for an unknown group."""
         if group is None:
             return list(self._model.robot.link_map) if self._model is not None else []
         return list(self._of(group).links)

@@ -13,12 +13,12 @@ from pytest_tarl.ros.kdl.solvers import ChainFkSolverPos_recursive, ChainIkSolve
 from pytest_tarl.ros.kdl_parser import treeFromUrdfModel
 from pytest_tarl.ros.urdf_parser.urdf import Robot
 
-_FASTEST: Final = 1.0  # speed (rad/s or m/s) of a joint without a limit
+_FASTEST: Final = 1.0  # speed limit (rad/s or m/s) of joints that have none
 
 
 @dataclass(frozen=True)
 class Group:
-    """A planning group: its joints that move, its links, its named states, and the link at its end."""
+    """A planning group: moving joints, links, named states, and the link at its end."""
 
     name: str
     joints: tuple[str, ...]
@@ -39,30 +39,30 @@ class RobotModel:
 
     @property
     def joints(self) -> tuple[str, ...]:
-        """Return the joints that move."""
+        """Return the moving joints."""
         return tuple(str(one.name) for one in self.robot.joints if self._moves(str(one.name)))
 
     @property
     def planning_frame(self) -> str:
-        """Return the parent frame of a virtual joint that moves, or else the root link."""
+        """Return the parent frame of a moving virtual joint, or the root link."""
         for one in self._srdf.findall("virtual_joint"):
             if one.get("type") != "fixed":
                 return one.get("parent_frame", self.root)
         return self.root
 
     def speed(self, joint: str) -> float:
-        """Return the speed limit of a joint, in rad/s or m/s."""
+        """Return a joint's speed limit in rad/s or m/s."""
         limit = self.robot.joint_map[joint].limit
         return limit.velocity if limit is not None and limit.velocity else _FASTEST
 
     def bounds(self, joint: str) -> tuple[float, float] | None:
-        """Return the limits of a joint's position; None for a joint without limits."""
+        """Return the limits of a joint's position; None if it has none."""
         found = self.robot.joint_map[joint]
         limited = found.limit is not None and found.joint_type != "continuous"
         return (found.limit.lower, found.limit.upper) if limited and found.limit is not None else None
 
     def pose(self, link: str, state: Mapping[str, float]) -> Frame:
-        """Return the pose of a link in the frame of the root link. Raise KeyError for an unknown link."""
+        """Return a link's pose in the root link's frame. Raise KeyError for an unknown link."""
         chain = self._tree.getChain(self.root, link) if link in self.robot.link_map else None
         if chain is None:
             raise KeyError(link)
@@ -75,7 +75,7 @@ class RobotModel:
     ) -> dict[str, float] | None:
         """Return joint values near `state` that bring a link to a pose, or None if none are found.
 
-        The search starts from the current state. If it fails, it starts again from the middle and from a quarter of the
+        The search starts from the current state. If it fails, it restarts from the middle and from a quarter of the
         joints' ranges.
         """
         chain = self._tree.getChain(self.root, link)
@@ -134,7 +134,7 @@ class RobotModel:
         )
 
     def _parts(self, name: str, seen: tuple[str, ...]) -> tuple[list[str], list[str]]:
-        """Return the names of the joints and links of a group and of its subgroups."""
+        """Return the joints and links of a group, including those of its subgroups."""
         joints: list[str] = []
         links: list[str] = []
         group = next(
@@ -175,6 +175,6 @@ def _values(chain: Chain, state: Mapping[str, float]) -> JntArray:
 
 
 def described(parameters: Mapping[str, Any], name: str) -> RobotModel | None:
-    """Return the robot of the parameter `name` and its semantic description, or None if one of them is not set."""
+    """Return the robot in the parameter `name` and its semantic description; None if one of them is not set."""
     urdf, srdf = parameters.get(name), parameters.get(f"{name}_semantic")
     return RobotModel(str(urdf), str(srdf)) if urdf and srdf else None

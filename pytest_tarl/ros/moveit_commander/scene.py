@@ -1,4 +1,4 @@
-"""`PlanningSceneInterface`: the objects of the planning scene, which do not affect plans."""
+"""`PlanningSceneInterface`: objects in the planning scene, which have no effect on plans."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _REMOVE: Final = 1
 
 
 class PlanningSceneInterface:
-    """Publishes changes of the planning scene on `planning_scene`, and remembers the objects."""
+    """Publishes changes on `planning_scene`, and remembers the objects."""
 
     def __init__(self, ns: str = "", synchronous: bool = False, service_timeout: float = 5.0) -> None:  # noqa: ARG002
         self._objects: dict[str, Any] = {}
@@ -69,7 +69,7 @@ class PlanningSceneInterface:
         size: Sequence[float] = (1, 1, 1),
         touch_links: Sequence[str] = (),
     ) -> None:
-        """Attach an object to a link; with a pose, add a box for it."""
+        """Attach an object to a link; if a pose is given, add a box for it."""
         item = _solid(name, pose, _BOX, size) if pose is not None else self._objects.pop(name, _named(name))
         attached: Any = class_of("ros1", "moveit_msgs/AttachedCollisionObject")()
         attached.object, attached.link_name = item, link
@@ -83,7 +83,7 @@ class PlanningSceneInterface:
         self._attach(attached_collision_object)
 
     def remove_attached_object(self, link: str | None = None, name: str | None = None) -> None:
-        """Detach all objects of a link, or only the object of this name; detached objects stay in the world."""
+        """Detach the objects of a link, or the one with this name; detached objects stay in the world."""
         for key, one in [*self._attached.items()]:
             if name in (None, key) and link in (None, one.link_name):
                 del self._attached[key]

@@ -18,7 +18,7 @@ from pytest_tarl.ros.posemath import fromMsg
 
 
 class Targets:
-    """A group of joints of a robot, its present state and its target."""
+    """A robot's group of joints, with its current state and its target."""
 
     def __init__(self, name: str, description: str) -> None:
         self._motions = Motions.here()
@@ -30,7 +30,7 @@ class Targets:
         self._tip, self._frame = self._group.tip, ""
         self._goal: dict[str, float] | None = None  # joint values
         self._pose: tuple[str, Any] | None = None  # the link to move, and its PoseStamped
-        self._start: dict[str, float] | None = None  # joint values, if the start is not the current state
+        self._start: dict[str, float] | None = None  # joint values; None to plan from the current state
         self._kept: dict[str, list[float]] = {}
         self._random = random.Random(name)
 
@@ -39,7 +39,7 @@ class Targets:
         return self._group.name
 
     def get_joints(self) -> list[str]:
-        """Return the joints that move."""
+        """Return the moving joints."""
         return list(self._group.joints)
 
     get_active_joints = get_joints
@@ -53,15 +53,15 @@ class Targets:
         return list(self._group.links)
 
     def has_end_effector_link(self) -> bool:
-        """Return whether there is a link for poses."""
+        """Return whether poses have a link."""
         return bool(self._tip)
 
     def get_end_effector_link(self) -> str:
-        """Return the link for poses."""
+        """Return the link that poses apply to."""
         return self._tip
 
     def set_end_effector_link(self, link_name: str) -> None:
-        """Set the link for poses. Raise MoveItCommanderException for an unknown link."""
+        """Set the link that poses apply to. Raise MoveItCommanderException for an unknown link."""
         if self._model is not None and link_name not in self._model.robot.link_map:
             raise MoveItCommanderException("Unable to set end effector link")
         self._tip = link_name
@@ -104,7 +104,7 @@ class Targets:
         return [self._random.uniform(*(one or (-3.14, 3.14))) for one in bounds]
 
     def get_random_pose(self, end_effector_link: str = "") -> Any:
-        """Return the pose of a link at random joint values."""
+        """Return a link's pose at random joint values."""
         values = dict(zip(self._group.joints, self.get_random_joint_values(), strict=True))
         return self._stamped(self._link(end_effector_link), {**self._now(), **values})
 
@@ -117,7 +117,7 @@ class Targets:
         self._start = dict(zip(msg.joint_state.name, msg.joint_state.position, strict=True))
 
     def set_joint_value_target(self, arg1: Any, arg2: Any = None, arg3: Any = None) -> None:
-        """Set a target of joint values: a list, a mapping, a JointState, a name with a value, or a pose.
+        """Set joint values as the target: a list, a mapping, a JointState, a name with a value, or a pose.
 
         Raise MoveItCommanderException for unknown names, a wrong number of values, or values beyond the limits.
         """
@@ -163,11 +163,11 @@ class Targets:
         self._goal, self._pose = {**(self._goal or self._now()), **given}, None
 
     def get_joint_value_target(self) -> list[float]:
-        """Return the target of joint values."""
+        """Return the target's joint values."""
         return self._values(self._goal or self._now())
 
     def set_named_target(self, name: str) -> None:
-        """Set a state of the semantic description, or remembered values, as the target.
+        """Set the target: a state from the semantic description, or remembered values.
 
         Raise MoveItCommanderException for an unknown name.
         """
@@ -179,7 +179,7 @@ class Targets:
             raise MoveItCommanderException(f"Unable to set target {name}. Is the target within bounds?")
 
     def get_named_targets(self) -> list[str]:
-        """Return the names of the states of the semantic description and of the remembered values."""
+        """Return the names of the semantic description's states and of the remembered values."""
         return [*self._group.states, *self._kept]
 
     def get_named_target_values(self, target: str) -> dict[str, float]:
@@ -187,7 +187,7 @@ class Targets:
         return dict(self._group.states.get(target, {}))
 
     def remember_joint_values(self, name: str, values: Sequence[float] | None = None) -> None:
-        """Remember joint values, by default the current ones, as a named target."""
+        """Remember joint values (by default, the current ones) as a named target."""
         self._kept[name] = list(values) if values is not None else self.get_current_joint_values()
 
     def get_remembered_joint_values(self) -> dict[str, list[float]]:
@@ -203,33 +203,33 @@ class Targets:
         self._set_goal(dict(zip(self._group.joints, self.get_random_joint_values(), strict=True)))
 
     def set_pose_target(self, pose: Any, end_effector_link: str = "") -> None:
-        """Set a target pose of a link: a Pose, a PoseStamped, or a list of 6 or 7 numbers."""
+        """Set a link's target pose: a Pose, a PoseStamped, or a list of 6 or 7 numbers."""
         self._pose = self._link(end_effector_link), self._posed(pose)
         self._goal = None
 
     def set_pose_targets(self, poses: Sequence[Any], end_effector_link: str = "") -> None:
-        """Set target poses; only the first one is used."""
+        """Set target poses, of which only the first is used."""
         self.set_pose_target(poses[0], end_effector_link)
 
     def set_position_target(self, xyz: Sequence[float], end_effector_link: str = "") -> None:
-        """Set a target position of a link; its present orientation is kept."""
+        """Set a link's target position; its orientation stays."""
         pose = self.get_current_pose(end_effector_link)
         pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = map(float, xyz)
         self.set_pose_target(pose, end_effector_link)
 
     def set_orientation_target(self, q: Sequence[float], end_effector_link: str = "") -> None:
-        """Set a target quaternion of a link; its present position is kept."""
+        """Set a link's target quaternion; its position stays."""
         pose = self.get_current_pose(end_effector_link)
         turn = pose.pose.orientation
         turn.x, turn.y, turn.z, turn.w = map(float, q)
         self.set_pose_target(pose, end_effector_link)
 
     def set_rpy_target(self, rpy: Sequence[float], end_effector_link: str = "") -> None:
-        """Set target roll, pitch and yaw of a link; its present position is kept."""
+        """Set a link's target roll, pitch and yaw; its position stays."""
         self.set_orientation_target(Rotation.RPY(*rpy).GetQuaternion(), end_effector_link)
 
     def shift_pose_target(self, axis: int, value: float, end_effector_link: str = "") -> None:
-        """Set the current pose as the target, with one of x, y, z, roll, pitch and yaw (0 to 5) changed."""
+        """Set the current pose as the target, after changing x, y, z, roll, pitch or yaw (axis 0 to 5)."""
         pose = self.get_current_pose(end_effector_link)
         numbers = [*fromMsg(pose.pose).p, *rpy_of(pose.pose)]
         numbers[axis] += value
@@ -245,7 +245,7 @@ class Targets:
         self._pose = None
 
     def _joints_at(self, link: str, stamped: Any) -> dict[str, float] | None:
-        """Return joint values for a pose, or None. A frame may be a link of the robot."""
+        """Return joint values for a pose, or None. The pose's frame may be a link of the robot."""
         if self._model is None:
             return None
         frame, pose = stamped.header.frame_id.lstrip("/"), fromMsg(stamped.pose)
@@ -290,7 +290,7 @@ class Targets:
 
 
 def along(one: Frame, other: Frame, part: float) -> Frame:
-    """Return the frame at a part of the way from one frame to another."""
+    """Return the frame at the share `part` of the way from one frame to another."""
     angle, axis = (one.M.Inverse() * other.M).GetRotAngle()
     place: Vector = one.p + part * (other.p - one.p)
     return Frame(one.M * Rotation.Rot(axis, part * angle), place)

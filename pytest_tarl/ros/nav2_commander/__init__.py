@@ -1,1 +1,1 @@
-"""Stand-in for `nav2_simple_commander`: commands to Nav2 by its actions and services."""
+"""Stand-in for `nav2_simple_commander`: commands to Nav2 through its actions and services."""

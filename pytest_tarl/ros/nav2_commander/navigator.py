@@ -1,4 +1,4 @@
-"""`BasicNavigator`: sends tasks to the action servers of Nav2, and waits for them."""
+"""`BasicNavigator`: sends tasks to Nav2's action servers, and waits for them."""
 
 # ruff: noqa: N802 (names are those of nav2_simple_commander)
 
@@ -28,9 +28,9 @@ class TaskResult(Enum):
 
 
 class BasicNavigator(PathRequests, MapRequests):
-    """A node that sends one task at a time: start it, call `isTaskComplete` until it returns true, then `getResult`.
+    """A node that sends one task at a time: start it, call `isTaskComplete` until it is true, then `getResult`.
 
-    It waits in virtual time for missing servers, which the nodes or the world of a test provide.
+    It waits in virtual time for missing servers, which other nodes or the test's world provide.
     """
 
     def __init__(self, node_name: str = "basic_navigator", namespace: str = "") -> None:
@@ -45,7 +45,7 @@ class BasicNavigator(PathRequests, MapRequests):
         self._watch_pose()
 
     def setInitialPose(self, initial_pose: Any) -> None:
-        """Publish the pose of the robot for the localizer."""
+        """Publish the robot's pose for the localizer."""
         self.initial_pose_received = False
         self.initial_pose = initial_pose
         self._publish_pose(initial_pose)
@@ -105,9 +105,9 @@ class BasicNavigator(PathRequests, MapRequests):
             self._wait_for(self.goal_handle.cancel_goal_async())
 
     def isTaskComplete(self) -> bool:
-        """Return whether the task has ended; wait for at most 0.1 s."""
+        """Return whether the task has ended, after waiting for at most 0.1 s."""
         if self.result_future is None:
-            return True  # there is no task, or an earlier call has already got its result
+            return True  # there is no task, or an earlier call already received its result
         self._wait_for(self.result_future, 0.1)
         if self.result_future.result() is None:
             return False  # the wait timed out
@@ -126,7 +126,7 @@ class BasicNavigator(PathRequests, MapRequests):
         return ends.get(self.status, TaskResult.UNKNOWN) if self.status is not None else TaskResult.UNKNOWN
 
     def waitUntilNav2Active(self, navigator: str = "bt_navigator", localizer: str = "amcl") -> None:
-        """Wait until the localizer and the navigator are active and, for AMCL, until a pose arrives."""
+        """Wait until localizer and navigator are active and, for AMCL, until a pose arrives."""
         if localizer != "robot_localization":
             self._wait_until_active(localizer)
         if localizer == "amcl":

@@ -1,4 +1,4 @@
-"""Requests of a navigator to the servers of Nav2: paths, maps, costmaps, and the lifecycle of Nav2's nodes."""
+"""A navigator's requests to the servers of Nav2: paths, maps, costmaps, and node lifecycles."""
 
 # ruff: noqa: N802 (names are those of nav2_simple_commander)
 
@@ -17,7 +17,7 @@ _SUCCEEDED = 4  # action_msgs/GoalStatus
 
 
 class Requests(Node):
-    """A node that calls actions and services of Nav2, and waits for them in virtual time."""
+    """A node that calls Nav2's actions and services, and waits for them in virtual time."""
 
     def __init__(self, node_name: str, namespace: str) -> None:
         super().__init__(node_name=node_name, namespace=namespace)
@@ -47,7 +47,7 @@ class Requests(Node):
     def _send(
         self, action: str, name: str, goal: dict[str, Any], on_feedback: Callable[[Any], None] | None = None
     ) -> Any:
-        """Send a goal to an action server, and return its handle once the server has answered."""
+        """Send a goal to an action server; return its handle once the server has answered."""
         kind = message_type(f"nav2_msgs/action/{action}")
         if name not in self._actions:
             self._actions[name] = ActionClient(self, kind, name)
@@ -173,7 +173,7 @@ class MapRequests(Requests):
         self._manage(0)
 
     def lifecycleShutdown(self) -> None:
-        """Shut the nodes of all lifecycle managers down."""
+        """Shut down the nodes of all lifecycle managers."""
         self._manage(4)
 
     def _manage(self, command: int) -> None:

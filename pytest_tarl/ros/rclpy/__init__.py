@@ -1,4 +1,4 @@
-"""Stand-in for rclpy: same names, virtual clock, no middleware."""
+"""Stand-in for rclpy, with the same names, a virtual clock and no middleware."""
 
 # ruff: noqa: ARG001 (signatures are rclpy's)
 
@@ -42,7 +42,7 @@ from pytest_tarl.ros.rclpy.utilities import (
     try_shutdown,
 )
 
-# `import rclpy` is enough for rclpy.duration.Duration, as in rclpy itself
+# as in rclpy, `import rclpy` is enough for rclpy.duration.Duration
 clock = duration = clock_type = time
 publisher = subscription = topics
 client = service
@@ -59,7 +59,7 @@ __all__ = [
 
 
 def init(*, args: list[str] | None = None, context: Any = None, **_: Any) -> Context:
-    """Initialise ROS in this program. As a context manager, shut ROS down on exit."""
+    """Initialise ROS in this program; as a context manager, also shut it down on exit."""
     found = this_context("init")
     found.init(args)
     return found
@@ -90,7 +90,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
-    """Run one callback of the node; wait up to `timeout_sec` until one is ready."""
+    """Run one callback of the node, waiting up to `timeout_sec` for one to become ready."""
     executor = executor or get_global_executor()
     executor.add_node(node)
     try:

@@ -1,4 +1,4 @@
-"""Callback groups: which callbacks a multi-threaded executor may run concurrently."""
+"""Callback groups: which callbacks a multi-threaded executor may run at the same time."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Decides whether a further callback of the group may start. Base class for groups that nodes define."""
+    """Decides whether another callback of the group may start; a base class for nodes' own groups."""
 
     def __init__(self) -> None:
         self.entities: set[Any] = set()
@@ -26,7 +26,7 @@ class CallbackGroup:
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Return whether a callback may start, and count it as running if so."""
+        """Return whether a callback may start; if so, count it as running."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
@@ -61,7 +61,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return self.active is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Return whether no callback was running, and count this one as running if so."""
+        """Return whether no callback was running; if so, count this one as running."""
         if self.active is not None:
             return False
         self.active = entity

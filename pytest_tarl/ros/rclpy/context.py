@@ -1,4 +1,4 @@
-"""The context that `rclpy.init` initialises: whether ROS is up in this process."""
+"""The context that `rclpy.init` initialises: whether ROS is running in this process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_tarl.ros.rclpy.exceptions import NotInitializedException, RCLError
 
 
 class Context:
-    """The rclpy context of a process. This context is a singleton, which `Context()` returns."""
+    """The rclpy context of a process; `Context()` always returns the same one."""
 
     def __new__(cls, process: Process | None = None) -> Context:
         """Return the process's context; create it on first use."""
@@ -31,7 +31,7 @@ class Context:
         process.at_end(self._stop)
 
     def init(self, args: list[str] | None = None, **_: Any) -> None:
-        """Initialise ROS. Raise RuntimeError if ROS is up already."""
+        """Initialise ROS. Raise RuntimeError if this was already done."""
         if self.initialised:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -39,11 +39,11 @@ class Context:
         self.initialised = True
 
     def ok(self) -> bool:
-        """Return whether ROS is up."""
+        """Return whether ROS is initialised and not shut down."""
         return self.initialised and not self.process.ending
 
     def get_domain_id(self) -> int:
-        """Return the DDS domain of the environment. Raise NotInitializedException before `init`."""
+        """Return the environment's DDS domain. Raise NotInitializedException before `init`."""
         self.require()
         return int(os.environ.get("ROS_DOMAIN_ID") or 0)
 
@@ -59,7 +59,7 @@ class Context:
         """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")
-            # this exception is not reported, because programs often end with `shutdown`
+            # not reported, because programs often end with `shutdown`
             error.tarl_shutdown = True
             raise error
         if not self.initialised:
@@ -67,7 +67,7 @@ class Context:
         self._stop()
 
     def try_shutdown(self) -> None:
-        """Shut ROS down unless it is down already."""
+        """Shut ROS down, unless it already is."""
         if self.ok():
             self._stop()
 

@@ -1,4 +1,4 @@
-"""Check parameter values against descriptors: type, range, read-only."""
+"""Check parameter values against their descriptors: type, range, read-only."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def new_descriptor(**fields: Any) -> Any:
 
 
 def objection(parameter: Parameter, descriptor: Any, *, declaring: bool) -> str:
-    """Return rclpy's reason for refusing a value, or "" if the descriptor allows it."""
+    """Return rclpy's reason for rejecting a value; empty if the descriptor allows it."""
     if descriptor.read_only and not declaring:
         return f"Trying to set a read-only parameter: {parameter.name}."
     if not descriptor.dynamic_typing:

@@ -1,4 +1,4 @@
-"""Callbacks for quality-of-service events: accepted but never called, because no message is late or lost."""
+"""Callbacks for quality-of-service events, which are never called, because no message is late or lost."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ EventCallback = Callable[[Any], Any]
 
 
 class UnsupportedEventTypeError(RuntimeError):
-    """A middleware does not support an event; never raised here."""
+    """The middleware does not support an event; never raised here."""
 
 
 class _EventCallbacks:
-    """Holds callbacks under rclpy's names."""
+    """Stores callbacks under rclpy's names."""
 
     _names: tuple[str, ...] = ()
 
@@ -39,10 +39,10 @@ class PublisherEventCallbacks(_EventCallbacks):
 
 
 class EventInfo:
-    """The argument of an event's callback; never created here."""
+    """The argument of event callbacks; never created here."""
 
 
-# rclpy has a class for each event, which nodes name in annotations
+# rclpy has a class for each event, which nodes use in annotations
 IncompatibleTypeInfo = QoSLivelinessChangedInfo = QoSLivelinessLostInfo = QoSMessageLostInfo = EventInfo
 QoSOfferedDeadlineMissedInfo = QoSRequestedDeadlineMissedInfo = EventInfo
 QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo = EventInfo

@@ -15,7 +15,7 @@ class NotInitializedException(Exception):  # noqa: N818 (these names are rclpy's
 
 
 class RCLError(RuntimeError):
-    """An error of rcl, the C layer below rclpy."""
+    """An error from rcl, the C layer below rclpy."""
 
     tarl_shutdown = False
 
@@ -59,7 +59,7 @@ class InvalidServiceNameException(NameValidationException):
 
 
 class InvalidHandle(RuntimeError):  # noqa: N818
-    """A destroyed entity is used."""
+    """A destroyed entity was used."""
 
 
 class TimerCancelledError(RuntimeError):
@@ -78,21 +78,21 @@ class ParameterException(Exception):  # noqa: N818
 
 
 class ParameterNotDeclaredException(ParameterException):
-    """An undeclared parameter is read or set."""
+    """An undeclared parameter was read or set."""
 
     def __init__(self, parameters: Any, *args: Any) -> None:
         super().__init__("Invalid access to undeclared parameter(s)", parameters, *args)
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
-    """A parameter is declared twice."""
+    """A parameter was declared twice."""
 
     def __init__(self, parameters: Any, *args: Any) -> None:
         super().__init__("Parameter(s) already declared", parameters, *args)
 
 
 class ParameterUninitializedException(ParameterException):
-    """A statically typed parameter is read before it has a value."""
+    """A statically typed parameter was read before it had a value."""
 
     def __init__(self, parameter_name: str, *args: Any) -> None:
         super().__init__("The parameter is not initialized", parameter_name, *args)
@@ -106,7 +106,7 @@ class InvalidParameterException(ParameterException):
 
 
 class InvalidParameterTypeException(ParameterException):
-    """A parameter is set to a value of another type than declared."""
+    """A parameter was set to a value that is not of its declared type."""
 
     def __init__(self, parameter: Any, expected: Any, *args: Any) -> None:
         name, given = parameter.name, parameter.type_.name
@@ -115,14 +115,14 @@ class InvalidParameterTypeException(ParameterException):
 
 
 class InvalidParameterValueException(ParameterException):
-    """A parameter callback refused a value."""
+    """A parameter callback rejected a value."""
 
     def __init__(self, parameter: Any, value: Any, reason: str, *args: Any) -> None:
         super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter)
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter is set or undeclared."""
+    """A read-only parameter was set or undeclared."""
 
     def __init__(self, parameter_name: str, *args: Any) -> None:
         super().__init__("Attempted to modify read-only parameter", parameter_name, *args)

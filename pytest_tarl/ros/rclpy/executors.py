@@ -1,4 +1,4 @@
-"""rclpy's executors: wait for ready entities of their nodes and run their callbacks."""
+"""rclpy's executors: wait for entities of their nodes to become ready, and run their callbacks."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -30,7 +30,7 @@ class Entity(Protocol):
         """Return whether there is work."""
 
     def run(self) -> Any:
-        """Do the work; return a coroutine if the executor has to continue it."""
+        """Do the work; return a coroutine if the executor must continue it."""
 
 
 class ExternalShutdownException(Exception):  # noqa: N818 (these names are rclpy's)
@@ -62,10 +62,10 @@ class Executor:
         self._tasks: list[Task] = []
         self._batch: deque[Entity] = deque()
         self._waiting: list[RunningTask] = []
-        # whether an entity may have become ready since the last check; timers do not count
+        # whether an entity other than a timer may have become ready since the last check
         self._stirred = True
         self._is_shutdown = False
-        self._active, self._limit = 0, 1  # number of running callbacks, and the largest number allowed
+        self._active, self._limit = 0, 1  # number of running callbacks, and its limit
         self.context.on_wake(self.wake)
 
     def add_node(self, node: Node) -> bool:
@@ -123,7 +123,7 @@ class Executor:
                 self._run(work)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Run one callback; wait up to `timeout_sec` for it (None: no limit)."""
+        """Run one callback; wait for it up to `timeout_sec` (None: no limit)."""
         work = self._next_work(_until(self._clock.time, timeout_sec), None)
         if work is not None:
             self._run(work)
@@ -131,7 +131,7 @@ class Executor:
             asked()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
-        """Run callbacks until a future is done, or the timeout has passed."""
+        """Run callbacks until a future is done or the timeout has passed."""
         until = _until(self._clock.time, timeout_sec)
         future.watch(self.wake)
         future.add_done_callback(_nothing)
@@ -158,7 +158,7 @@ class Executor:
                 raise ExternalShutdownException
             if not self.context.initialised or self._is_shutdown or (future is not None and future.done()):
                 return None
-            # look for ready entities once per round; a refused entity waits for the next round
+            # check for ready entities once per round; a rejected entity waits for the next round
             looked = False
             while self._active < self._limit:
                 if not batch:
@@ -176,16 +176,16 @@ class Executor:
         """Return whether the entity's group lets its callback start now."""
         group = entity.callback_group
         if type(group) is MutuallyExclusiveCallbackGroup and group.active is None:
-            group.active = entity  # fast path with the same result as the two calls below
+            group.active = entity  # a faster equivalent of the two calls below
             return True
         if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
             return True
-        # look again in the next round, because a custom group may then decide differently
+        # check again in the next round: a custom group may then decide differently
         self._stirred = True
         return False
 
     def _look(self) -> bool:
-        """Collect ready timers, and also other ready entities if any may have changed; return whether there are any."""
+        """Collect ready timers and, if anything may have changed, other ready entities; return whether any is ready."""
         if self._stirred:
             self._stirred = False
             self._batch.extend(self._ready())
@@ -198,7 +198,7 @@ class Executor:
         return bool(self._batch)
 
     def _ready(self) -> list[Entity]:
-        """Return the ready entities in rclpy's order: tasks, then each node's entities by kind."""
+        """Return the ready entities in rclpy's order: tasks, then the entities of each node by kind."""
         found: list[Entity] = []
         if self._tasks:
             self._tasks = [task for task in self._tasks if task.pending()]
@@ -233,10 +233,10 @@ class Executor:
         if outcome is not None:
             self._go_on(outcome, work)
         if work.is_ready():
-            self._stirred = True  # look again in the next round, because the coroutine has not ended
+            self._stirred = True  # check again in the next round: the coroutine has not ended
 
     def _go_on(self, outcome: Any, work: Entity) -> None:
-        """Continue the coroutine of a callback; its group stays occupied until it returns."""
+        """Continue a callback's coroutine; its group stays occupied until it returns."""
         if inspect.iscoroutine(outcome):
             going_on = self.create_task(outcome)
             if work.callback_group is not None:
@@ -264,7 +264,7 @@ class EventsExecutor(Executor):
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks concurrently as far as their groups allow. A callback that waits does not block the others."""
+    """Runs callbacks at the same time where their groups allow it; a waiting callback does not block others."""
 
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
@@ -277,7 +277,7 @@ class MultiThreadedExecutor(Executor):
             return None
 
     def _run(self, work: Entity) -> None:
-        """Start a callback in its own task; it runs until it waits."""
+        """Start a callback in its own task, which runs until it waits."""
         self._active += 1
         self._clock.spawn(self.process, self._run_beside, work)
         self._clock.yield_now()

@@ -1,4 +1,4 @@
-"""rclpy.experimental: its executor runs callbacks like a single-threaded executor; on a robot, it is faster."""
+"""rclpy.experimental: its executor is faster on a robot; here, it is a single-threaded executor."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class NodeGraph:
         ]
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the services for which a node has clients, with types."""
+        """Return the services that a node has clients for, with types."""
         return [
             (c.srv_name, [_service_type(c.srv_type)]) for c in self._find(node_name, node_namespace).clients_
         ]
@@ -138,7 +138,7 @@ class NodeGraph:
         ]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Wait until a node exists; return whether it exists within `timeout` seconds."""
+        """Wait for a node; return whether it appeared within `timeout` seconds."""
         clock = self.process.scheduler
         until = clock.time + nanoseconds(timeout)
         wanted = "/" + fully_qualified_node_name.lstrip("/")
@@ -165,7 +165,7 @@ class NodeGraph:
 
 
 class NodeNameNonExistentError(RuntimeError):
-    """No node has that name."""
+    """There is no node of this name."""
 
 
 def _types(place: Any) -> list[str]:

@@ -1,4 +1,4 @@
-"""rclpy's loggers, by Python's `logging`, so that pytest captures them."""
+"""rclpy's loggers on top of Python's `logging`, so that pytest captures them."""
 
 # ruff: noqa: ARG001 (signatures are rclpy's)
 
@@ -48,7 +48,7 @@ class RcutilsLogger:
         return severity >= LoggingSeverity.INFO
 
     def log(self, message: Any, severity: int, *, depth: int = 1, **options: Any) -> bool:
-        """Log a message; `once`, `throttle_duration_sec` and `skip_first` apply to each call site."""
+        """Log a message; `once`, `throttle_duration_sec` and `skip_first` apply per call site."""
         if options and not _wanted(sys._getframe(depth), options):
             return False
         if self._logger.isEnabledFor(severity):
@@ -90,7 +90,7 @@ def _wanted(frame: Any, options: dict[str, Any]) -> bool:
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """Return the logger with that name. Raise ValueError if the name is empty."""
+    """Return the logger with this name. Raise ValueError if the name is empty."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return RcutilsLogger(name)
@@ -101,7 +101,7 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """Return the level with a name, given in upper or lower case. Raise RuntimeError for an unknown name."""
+    """Return the level with this name (in any case). Raise RuntimeError for an unknown name."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:

@@ -37,7 +37,7 @@ _NOT_YET = frozenset(["add_waitable", "remove_waitable", "get_node_names_and_nam
 
 
 class Node(NodeEntities, NodeGraph, NodeParameters):
-    """A node: its name, and the functions that create its entities. Base classes add entities, graph and parameters."""
+    """A node: its name, and functions that create entities. Base classes add entities, graph and parameters."""
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
 
     @property
     def executor(self) -> Any:
-        """The executor that runs this node's callbacks; assigning one adds the node to it."""
+        """Return the executor that runs this node's callbacks; assigning one adds the node to it."""
         return self._executor
 
     @executor.setter
@@ -106,12 +106,12 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         self._executor = executor
 
     def notify(self) -> None:
-        """Wake the executor: an entity became ready."""
+        """Wake the executor, because an entity became ready."""
         if self._executor is not None:
             self._executor.wake()
 
     def parameters_changed(self, parameters: list[Any], known: set[str]) -> None:
-        """Publish the changed parameters on /parameter_events if it has subscribers."""
+        """Publish changed parameters on /parameter_events, if it has subscribers."""
         place = self.process.bus.topic("/parameter_events")
         if place.subscriptions or place.listeners:
             event = parameter_event(self, parameters, known)
@@ -190,7 +190,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         raw: bool = False,
         content_filter_options: Any = None,
     ) -> Subscription:
-        """Create a subscription; raise for content filters, which the bus does not support."""
+        """Create a subscription; raise if a content filter is given, which the bus does not support."""
         if content_filter_options is not None:
             raise unsupported("Node.create_subscription(content_filter_options=…)")
         place = self.process.bus.topic(self.resolve_topic_name(topic))
@@ -219,7 +219,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return timer
 
     def create_rate(self, frequency: float, clock: Any = None) -> Rate:
-        """Create a rate in Hz. Raise ValueError unless it is positive."""
+        """Create a rate in Hz. Raise ValueError unless the frequency is positive."""
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         return Rate(self, frequency)

@@ -46,7 +46,7 @@ def parameter_dict_from_yaml_file(
 
 
 def _named_values(section: Any, above: str) -> dict[str, Any]:
-    """Return the values of a node's section by full dotted name. Raise RuntimeError for an invalid file."""
+    """Return the values in a node's section by dotted name. Raise RuntimeError for an invalid file."""
     found: dict[str, Any] = {}
     if not isinstance(section, dict) or "ros__parameters" not in section:
         raise RuntimeError("YAML file is not a valid ROS parameter file")
@@ -126,7 +126,7 @@ class Parameter:
     def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
         found = type_of(value)
         if type_ is not None and value is not None and type_ != found:
-            # type_of gives an empty list the type BYTE_ARRAY, but it fits every array type
+            # type_of takes an empty list for a BYTE_ARRAY, but it fits every array type
             if not (found == ParameterType.BYTE_ARRAY and not value):
                 raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
             found = type_
@@ -161,7 +161,7 @@ class Parameter:
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """Return rcl_interfaces/ParameterValue for a value written in YAML; text that is not YAML is a string."""
+    """Return rcl_interfaces/ParameterValue for a YAML value; text that is not YAML becomes a string."""
     return Parameter("value", value=parse_value(string_value)).get_parameter_value()
 
 

@@ -39,7 +39,7 @@ class AsyncParameterClient:
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Wait for each of the node's parameter services up to the timeout; return whether all are available."""
+        """Wait for each of the node's parameter services, up to the timeout; return whether all are available."""
         return all(client.wait_for_service(timeout_sec) for client in self._clients.values())
 
     def list_parameters(
@@ -61,7 +61,7 @@ class AsyncParameterClient:
         return self._ask("DescribeParameters", callback, names=list(names))
 
     def set_parameters(self, parameters: Iterable[Any], callback: Done | None = None) -> Future:
-        """Set parameters one by one, given as `Parameter` objects or messages."""
+        """Set parameters, given as `Parameter` objects or messages, one by one."""
         return self._ask("SetParameters", callback, parameters=[_message(one) for one in parameters])
 
     def set_parameters_atomically(self, parameters: Iterable[Any], callback: Done | None = None) -> Future:

@@ -1,4 +1,4 @@
-"""rclpy.parameter_event_handler: callbacks for changed parameters of any node, from /parameter_events."""
+"""rclpy.parameter_event_handler: callbacks for parameter changes of any node, from /parameter_events."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """A registered callback for one parameter of a node."""
+    """A callback registered for one parameter of a node."""
 
     parameter_name: str
     node_name: str
@@ -24,13 +24,13 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """A registered callback for all events."""
+    """A callback registered for all events."""
 
     callback: Callable[[Any], None]
 
 
 class ParameterEventHandler:
-    """Calls callbacks for changed parameters, the newest callback first."""
+    """Calls callbacks when parameters change, newest callback first."""
 
     def __init__(self, node: Node, qos_profile: Any = qos_profile_parameter_events) -> None:
         self._node = node
@@ -75,7 +75,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: Any) -> list[Any]:
-        """Return the new and the changed parameters of an event."""
+        """Return the new and changed parameters in an event."""
         return [*event.new_parameters, *event.changed_parameters]
 
     def _full(self, name: str) -> str:

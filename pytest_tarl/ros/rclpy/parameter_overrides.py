@@ -1,4 +1,4 @@
-"""Select the parameters that are meant for one node, from values that a test, a launch file or a file gives."""
+"""Select the parameters for one node from the values given by a test, a launch file or a parameter file."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from tarl_lint.workspace.parameter_yaml import dotted, matches, sections
 
 
 def overrides(given: Mapping[str, Any], full_name: str) -> dict[str, Any]:
-    """Return the values for the node with an absolute name; nested mappings become dotted names.
+    """Return the values for the node with this absolute name; nested mappings become dotted names.
 
-    Parameters that name no node apply to all nodes. Sections with `ros__parameters` apply to the nodes that match their
-    keys. A node in a namespace also gets the section with its own name. A mapping without `ros__parameters` is a
-    section if its key is the node's name or `**`. Otherwise, it holds nested parameters. Later values win.
+    - Parameters that name no node apply to all nodes.
+    - A section with `ros__parameters` applies to the nodes that match its key. A node in a namespace also gets the
+      section with its own name.
+    - A mapping without `ros__parameters` is a section if its key is the node's name or `**`; otherwise it has nested
+      parameters.
+    - Later values win.
     """
     name = full_name.rpartition("/")[2]
     chosen: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The six parameter services of a node, created when one is first requested."""
+"""The six parameter services of a node, created when one of them is first requested."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def offer_parameter_services(node: Node) -> None:
 
 
 class ParameterServices:
-    """Handles requests for the parameters of a node."""
+    """Handles requests for a node's parameters."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -96,7 +96,7 @@ class ParameterServices:
 
 
 def parameter_event(node: Node, parameters: list[Parameter], known: set[str]) -> Any:
-    """Create rcl_interfaces/ParameterEvent for changed parameters; `known` are the names declared before."""
+    """Create rcl_interfaces/ParameterEvent for changed parameters; `known` are those declared before."""
     made: Any = find_class("ros2", "rcl_interfaces", "ParameterEvent")
     event = made(stamp=node.get_clock().now().to_msg(), node=node.get_fully_qualified_name())
     for parameter in parameters:

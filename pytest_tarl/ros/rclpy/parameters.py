@@ -34,7 +34,7 @@ class NodeParameters:
 
     def __init__(self, overrides: dict[str, Any], allow_undeclared: bool) -> None:
         self._parameters: dict[str, Parameter] = {}
-        self._descriptors: dict[str, Any] = {}  # without a descriptor, only the type of the value is fixed
+        self._descriptors: dict[str, Any] = {}  # without a descriptor, only the value's type is fixed
         self._parameter_overrides = overrides
         self._allow_undeclared = allow_undeclared
         self._pre_set_callbacks: list[SetCallback] = []
@@ -51,7 +51,7 @@ class NodeParameters:
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
     ) -> Parameter:
-        """Declare a parameter. An override takes precedence over `value`, and the type is fixed from then on.
+        """Declare a parameter, whose type is then fixed. An override takes precedence over `value`.
 
         Raise ParameterAlreadyDeclaredException, InvalidParameterException for an invalid name, and
         InvalidParameterTypeException for a value of another type.
@@ -135,14 +135,14 @@ class NodeParameters:
         return [self.get_parameter(name) for name in names]
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """Return a parameter, or the alternative if it is not declared or has no value."""
+        """Return a parameter; if it is not declared or has no value, return the alternative."""
         parameter = self._parameters.get(name)
         if parameter is None or parameter.value is None:
             return alternative_value if alternative_value is not None else _without_value(name)
         return parameter
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters below a prefix, by the remaining part of their names."""
+        """Return the parameters below a prefix, by the rest of their names."""
         start = f"{prefix}." if prefix else ""
         return {name[len(start) :]: p for name, p in self._parameters.items() if name.startswith(start)}
 
@@ -155,7 +155,7 @@ class NodeParameters:
         return [self.get_parameter_type(name) for name in names]
 
     def list_parameters(self, prefixes: list[str], depth: int = 0) -> Any:
-        """Return names as rcl_interfaces/ListParametersResult; `depth` 0 is unlimited."""
+        """Return names as rcl_interfaces/ListParametersResult; a `depth` of 0 is unlimited."""
         made: Any = find_class("ros2", "rcl_interfaces", "ListParametersResult")
         names = [name for name in self._parameters if _below(name, prefixes, depth)]
         parents = {name.rpartition(".")[0] for name in names if "." in name}
@@ -176,7 +176,7 @@ class NodeParameters:
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
-        """Replace a descriptor and return the parameter's value; raise if the value does not fit."""
+        """Replace a descriptor; return the parameter's value. Raise if the value does not fit."""
         if self.describe_parameter(name).read_only:
             raise ParameterImmutableException(name)
         described = deepcopy(descriptor)
@@ -192,7 +192,7 @@ class NodeParameters:
         return parameter.get_parameter_value()
 
     def set_parameters(self, parameter_list: list[Parameter]) -> list[Any]:
-        """Set parameters one by one; each result says whether the parameter was accepted."""
+        """Set parameters one by one; each result says whether the value was accepted."""
         self._require_declared(parameter_list)
         return [self._set([parameter]) for parameter in parameter_list]
 
@@ -202,7 +202,7 @@ class NodeParameters:
         return self._set(list(parameter_list))
 
     def add_pre_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Register a callback that maps a list of parameters to the list that is set."""
+        """Register a callback that replaces the list of parameters before they are set."""
         self._pre_set_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: SetCallback) -> None:
@@ -210,7 +210,7 @@ class NodeParameters:
         self._pre_set_callbacks.remove(callback)
 
     def add_on_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Register a callback that can refuse a change; the newest is called first."""
+        """Register a callback that can reject a change; the newest is called first."""
         self._set_callbacks.insert(0, callback)
 
     def remove_on_set_parameters_callback(self, callback: SetCallback) -> None:
@@ -218,7 +218,7 @@ class NodeParameters:
         self._set_callbacks.remove(callback)
 
     def add_post_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Register a callback to be called after parameters have changed."""
+        """Register a callback that is called after parameters changed."""
         self._post_set_callbacks.insert(0, callback)
 
     def remove_post_set_parameters_callback(self, callback: SetCallback) -> None:
@@ -273,7 +273,7 @@ class NodeParameters:
 
 
 def _without_value(name: str) -> Parameter:
-    """Return a parameter without a value, and note for the node's error message that the node asked for it."""
+    """Return a parameter without a value; note for error messages that the node asked for it."""
     process = running_process()
     if process is not None:
         process.unset[name] = None

@@ -1,4 +1,4 @@
-"""Quality-of-service profiles. Only depth, history and durability have an effect: delivery is always reliable."""
+"""Quality-of-service profiles. Only depth, history and durability matter here: delivery is always reliable."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 class QoSProfile:
-    """A profile; requires `depth`, or a `history` that needs no depth, such as KEEP_ALL."""
+    """A profile; it needs a `depth`, or a `history` without depth, such as KEEP_ALL."""
 
     def __init__(self, **given: Any) -> None:
         if "history" not in given and "depth" not in given:
@@ -91,11 +91,11 @@ class QoSProfile:
 
     @property
     def capacity(self) -> int | None:
-        """The number of messages in a queue with this profile; None if unlimited."""
+        """Return the queue length of this profile; None if unlimited."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
     def satisfies(self, wanted: QoSProfile) -> bool:
-        """Return whether a publisher with this profile connects to a subscription with the profile `wanted`."""
+        """Return whether a publisher with this profile connects to a subscription with profile `wanted`."""
         lossy = (
             self.reliability == ReliabilityPolicy.BEST_EFFORT
             and wanted.reliability == ReliabilityPolicy.RELIABLE
@@ -113,9 +113,9 @@ class QoSProfile:
 
 
 def as_profile(given: Any) -> QoSProfile:
-    """Return a profile for an argument that is a profile or a depth.
+    """Return the profile for an argument that is a profile or a depth.
 
-    Raise ValueError for a negative depth, TypeError for other arguments.
+    Raise ValueError for a negative depth, and TypeError for other arguments.
     """
     if isinstance(given, QoSProfile):
         return given
@@ -140,7 +140,7 @@ qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPol
 
 
 class QoSCompatibility(IntEnum):
-    """Compatibility of two profiles."""
+    """How compatible two profiles are."""
 
     OK = 0
     WARNING = 1
@@ -150,14 +150,14 @@ class QoSCompatibility(IntEnum):
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Return the compatibility of a publisher and a subscription, and the reason if they do not connect."""
+    """Return the compatibility of a publisher and a subscription, and why they do not connect, if so."""
     if publisher_qos.satisfies(subscription_qos):
         return QoSCompatibility.OK, ""
     return QoSCompatibility.ERROR, "ERROR: the publisher offers less than the subscription asks for;"
 
 
 class QoSPresetProfiles(Enum):
-    """The profiles that come with ROS."""
+    """The profiles that ROS provides."""
 
     DEFAULT = qos_profile_default
     SYSTEM_DEFAULT = qos_profile_system_default
@@ -175,5 +175,5 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> Any:
-        """Return the profile with a name, given in upper or lower case. Raise KeyError."""
+        """Return the profile with this name (in any case). Raise KeyError."""
         return cls[name.upper()].value

@@ -1,4 +1,4 @@
-"""Quality of service that parameters override: `qos_overrides./topic.publisher.reliability`."""
+"""Parameters that override the quality of service: `qos_overrides./topic.publisher.reliability`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ENUMS: dict[str, type[IntEnum]] = {
     "durability": DurabilityPolicy,
     "liveliness": LivelinessPolicy,
 }
-QosCallbackType = Callable[[QoSProfile], Any]  # nodes use this name of rclpy in annotations
+QosCallbackType = Callable[[QoSProfile], Any]  # rclpy's name, which nodes use in annotations
 _DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
 
 
@@ -51,11 +51,11 @@ class QoSPolicyKind(IntEnum):
 
 
 class InvalidQosOverridesError(Exception):
-    """A parameter has no valid value for a policy, or the node's callback refuses the profile."""
+    """A parameter has no valid value for a policy, or the node's callback rejects the profile."""
 
 
 class QoSOverridingOptions:
-    """The policies that parameters may override; `callback` accepts or refuses the resulting profile."""
+    """The policies that parameters may override; `callback` accepts or rejects the resulting profile."""
 
     def __init__(
         self,
@@ -72,15 +72,15 @@ class QoSOverridingOptions:
     def with_default_policies(
         cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """Return options under which parameters may override history, depth and reliability."""
+        """Return options that let parameters override history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
 
 def overridden(node: Any, kind: str, topic: str, profile: QoSProfile, options: Any) -> QoSProfile:
-    """Declare the parameters of a publisher or subscription (`kind`), and return the profile with their values.
+    """Declare the parameters of a publisher or subscription (`kind`); return the profile with their values.
 
-    Raise InvalidQosOverridesError for an invalid value, or if the options' callback refuses the profile.
+    Raise InvalidQosOverridesError for an invalid value, or if the options' callback rejects the profile.
     """
     if options is None:
         return profile
@@ -106,7 +106,7 @@ def _stated(value: Any) -> Any:
 
 
 def _read(field: str, value: Any) -> Any:
-    """Return the policy that a parameter states."""
+    """Return the policy that a parameter specifies."""
     if field in _DURATIONS:
         return Duration(nanoseconds=value)
     if field not in _ENUMS:

@@ -9,7 +9,7 @@ from pytest_tarl.ros import blame
 
 
 class ReturnedTypeError(TypeError):
-    """A callback returned a value of a wrong type. `tarl_place` is the place of the callback's definition."""
+    """A callback returned a value of the wrong type; `tarl_place` is where the callback is defined."""
 
     def __init__(self, message: str, callback: Callable[..., Any]) -> None:
         super().__init__(message)
@@ -19,7 +19,7 @@ class ReturnedTypeError(TypeError):
 def require_returned(value: Any, wanted: type, what: str, callback: Callable[..., Any]) -> None:
     """Raise ReturnedTypeError unless a callback returned a value of type `wanted`.
 
-    `what` is the beginning of the sentence, such as "the callback of service /dock".
+    `what` starts the sentence, as in "the callback of service /dock".
     """
     if not isinstance(value, wanted):
         raise ReturnedTypeError(f"{what} returned {type(value)}, not {wanted}", callback)

@@ -1,4 +1,4 @@
-"""rclpy.serialization: messages as bytes, in the form in which DDS transports them."""
+"""rclpy.serialization: messages as bytes, as DDS transports them."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ def serialize_message(message: Any) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[T]) -> T:
-    """Return the message of class `message_type` that the bytes encode."""
+    """Return the message of class `message_type` in these bytes."""
     message: T = deserialize(serialized_message, message_type)
     return message

@@ -1,4 +1,4 @@
-"""`rclpy.service_introspection`: which calls of a service are published as events; here none are."""
+"""`rclpy.service_introspection`: which service calls are published as events; none are here."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 class ServiceIntrospectionState(IntEnum):
-    """What the events of a service contain."""
+    """What a service's events contain."""
 
     OFF = 0
     METADATA = 1
@@ -15,12 +15,12 @@ class ServiceIntrospectionState(IntEnum):
 
 
 class Introspected:
-    """Common part of services and clients, whose calls can be published as events."""
+    """Base of services and clients, whose calls can be published as events."""
 
     def configure_introspection(
         self, clock: Any, service_event_qos_profile: Any, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Do nothing: the topic of service events is not published. Raise TypeError for another state."""
+        """Do nothing: service events are not published. Raise TypeError if the state is not one of rclpy's."""
         del clock, service_event_qos_profile
         if not isinstance(introspection_state, ServiceIntrospectionState):
             raise TypeError(f"{introspection_state!r} is not a ServiceIntrospectionState")

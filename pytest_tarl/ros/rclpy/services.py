@@ -1,4 +1,4 @@
-"""rclpy's services and clients: request and response wait for the executor of the receiving node."""
+"""rclpy's services and clients: requests and responses wait for the receiving node's executor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
 
-SrvType = TypeVar("SrvType")  # nodes use these three names of rclpy in annotations
+SrvType = TypeVar("SrvType")  # three names of rclpy that nodes use in annotations
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
@@ -50,7 +50,7 @@ class Service(Introspected):
         return bool(self.queue)
 
     def run(self) -> Any:
-        """Handle the oldest request; a coroutine answers when it has finished."""
+        """Handle the oldest request; if the callback is a coroutine, answer when it has finished."""
         request, answer = self.queue.popleft()
         response = self.callback(request, self.srv_type.Response())
         if inspect.iscoroutine(response):
@@ -90,7 +90,7 @@ class Client(Introspected):
         return self.srv_name in self._directory
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Wait until the service is available; return whether it is available in time."""
+        """Wait for the service; return whether it became available in time."""
         process = self.node.process
         until = None if timeout_sec is None else process.scheduler.time + nanoseconds(timeout_sec)
         found = self._directory.wait(current_task(), self.srv_name, until, self.node.context.ok)
@@ -99,7 +99,7 @@ class Client(Introspected):
         return found
 
     def call_async(self, request: Any) -> Future:
-        """Send a request; the future is done once an executor has handled the response.
+        """Send a request; the future is done when an executor has handled the response.
 
         Raise TypeError for a request of another type.
         """
@@ -126,10 +126,9 @@ class Client(Introspected):
         return future.result()
 
     def answer(self, future: Future, response: Any) -> None:
-        """Handle a response. A waiting `call` returns it immediately; a future is completed by the executor.
+        """Handle a response: a waiting `call` returns it at once; a future is completed by the executor.
 
-        A ROS 2 client never learns that a ROS 1 node refused its request: the bridge between them only logs
-        the refusal.
+        A ROS 2 client never learns that a ROS 1 node refused its request: the bridge between them only logs this.
         """
         if isinstance(response, Refusal):
             self.node.get_logger().error(f"{self.srv_name} gave no response: {response.reason}")

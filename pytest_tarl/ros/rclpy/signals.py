@@ -1,4 +1,4 @@
-"""`rclpy.signals`: choices of signal handlers, which the in-process ROS never installs."""
+"""`rclpy.signals`: options for signal handlers, which the in-process ROS never installs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class SignalHandlerOptions(Enum):
-    """Signals on which rclpy would shut its contexts down."""
+    """The signals on which rclpy would shut down its contexts."""
 
     NO = 0
     SIGINT = 1

@@ -25,7 +25,7 @@ class Future:
         return self.result()
 
     def done(self) -> bool:
-        """Return whether there is a result or an exception; false if the future was cancelled."""
+        """Return whether there is a result or an exception; False if the future was cancelled."""
         return self._done
 
     def pending(self) -> bool:
@@ -43,7 +43,7 @@ class Future:
             self._finish()
 
     def result(self) -> Any:
-        """Return the result, or None if there is none yet; raise the exception if there is one."""
+        """Return the result, or None if there is none yet. Raise the exception if there is one."""
         if self._exception is not None:
             raise self._exception
         return self._result
@@ -65,7 +65,7 @@ class Future:
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
-        """Register a function to call with this future when it is done. The executor calls it, if there is one."""
+        """Register a function that is called with this future when it is done, by the executor if there is one."""
         if self.pending():
             self._callbacks.append(callback)
         elif self._executor is not None:
@@ -74,7 +74,7 @@ class Future:
             callback(self)
 
     def watch(self, watcher: Callable[[], Any]) -> None:
-        """Register an internal callback, called as soon as the future is done."""
+        """Register an internal callback that is called as soon as the future is done."""
         if self.pending():
             self._watchers.append(watcher)
         else:
@@ -126,13 +126,13 @@ class Task(Future):
         return self._executing
 
     def cancel(self) -> None:
-        """Cancel the task; close a coroutine that has begun."""
+        """Cancel the task; close its coroutine if it has started."""
         if self._coroutine is not None and self.pending():
             self._coroutine.close()
         super().cancel()
 
     def run(self) -> None:
-        """Continue to the end or to the next future that is not done. The executor's spin re-raises its exception."""
+        """Continue to the end, or to the next future that is not done. The executor's spin re-raises exceptions."""
         self._executing = True
         try:
             self._advance()

@@ -1,4 +1,4 @@
-"""rclpy's instants, durations and clocks, all on the virtual clock."""
+"""rclpy's times, durations and clocks, all on the virtual clock."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -17,7 +17,7 @@ CONVERSION_CONSTANT = S_TO_NS = NANOSECONDS
 
 
 class ClockType(Enum):
-    """The clock of an instant. A clock type prints as `ClockType.ROS_TIME`; it is not an int, but `int` converts it."""
+    """The clock of a time. It prints as `ClockType.ROS_TIME`; it is not an int, but `int` converts it."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -29,14 +29,14 @@ class ClockType(Enum):
 
 
 class Duration:
-    """A span of time in nanoseconds."""
+    """A duration in nanoseconds."""
 
     def __init__(self, *, seconds: float = 0, nanoseconds: float = 0) -> None:
         self._nanoseconds = int(seconds * NANOSECONDS) + int(nanoseconds)
 
     @property
     def nanoseconds(self) -> int:
-        """Return the span in nanoseconds."""
+        """Return the duration in nanoseconds."""
         return self._nanoseconds
 
     def __add__(self, other: Any) -> Duration:
@@ -64,7 +64,7 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: Any) -> Duration:
-        """Create a span from builtin_interfaces/Duration."""
+        """Create a duration from builtin_interfaces/Duration."""
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
 
     def __repr__(self) -> str:
@@ -93,7 +93,7 @@ class Duration:
 
 
 class Time:
-    """An instant in nanoseconds of one clock type; instants of different types cannot be compared."""
+    """A time in nanoseconds of one clock type; times of different clock types cannot be compared."""
 
     def __init__(
         self, *, seconds: float = 0, nanoseconds: int = 0, clock_type: ClockType = ClockType.SYSTEM_TIME
@@ -126,7 +126,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Create an instant from builtin_interfaces/Time."""
+        """Create a time from builtin_interfaces/Time."""
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)
 
     def __repr__(self) -> str:
@@ -192,7 +192,7 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """The smallest clock jump that is reported."""
+    """The smallest clock jump to report."""
 
     def __init__(
         self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
@@ -202,7 +202,7 @@ class JumpThreshold:
 
 
 class JumpHandle:
-    """Holds callbacks for clock jumps."""
+    """Keeps the callbacks for clock jumps."""
 
     def unregister(self) -> None:
         """Drop the callbacks."""
@@ -215,7 +215,7 @@ class JumpHandle:
 
 
 class Clock:
-    """Reads the virtual clock, for every clock type."""
+    """Reads the virtual clock, whatever the clock type."""
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> None:
         self._process = current_process("rclpy.clock.Clock")
@@ -242,13 +242,13 @@ class Clock:
         return f"Clock(clock_type={self.clock_type.name})"
 
     def sleep_until(self, until: Time, context: Any = None) -> bool:
-        """Wait until an instant; return whether it was reached before the shutdown."""
+        """Wait until a time; return whether it came before the shutdown."""
         while self._scheduler.time < until.nanoseconds and not self._process.ending:
             self._scheduler.wait(until.nanoseconds)
         return not self._process.ending
 
     def sleep_for(self, rel_time: Duration, context: Any = None) -> bool:
-        """Wait for a span; return whether it passed before the shutdown."""
+        """Wait for a duration; return whether it passed before the shutdown."""
         return self.sleep_until(self.now() + rel_time)
 
 
@@ -260,7 +260,7 @@ class ROSClock(Clock):
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Return True: time comes from the simulation."""
+        """Return True: the time comes from the simulation."""
         return True
 
 

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TimerInfo:
-    """The planned and the actual time of a timer's callback."""
+    """When a timer's callback was due, and when it was called."""
 
     expected_call_time: Time
     actual_call_time: Time
 
 
 class Timer:
-    """Becomes ready every `period` nanoseconds; a late executor skips missed periods."""
+    """Is ready every `period` nanoseconds; periods that an executor misses are skipped."""
 
     def __init__(
         self, node: Node, period: int, callback: Callable[..., Any] | None, group: Any, clock: Any = None
@@ -57,19 +57,19 @@ class Timer:
         self.node.notify()
 
     def time_since_last_call(self) -> int:
-        """Return nanoseconds since the last call, or since the timer began."""
+        """Return the nanoseconds since the last call, or since the timer started."""
         return self._clock.time - self._last
 
     def time_until_next_call(self) -> int | None:
-        """Return nanoseconds until the timer is ready, or None while it is cancelled."""
+        """Return the nanoseconds until the timer is ready; None while it is cancelled."""
         return None if self.canceled else self.due - self._clock.time
 
     def destroy(self) -> None:
-        """Stop it for good."""
+        """Stop the timer for good."""
         self.cancel()
 
     def run(self) -> Any:
-        """Start the next period that ends in the future, then call the callback."""
+        """Skip to the next period that ends in the future, then call the callback."""
         expected, self._last = self.due, self._clock.time
         self._begin_period()
         callback = self._callback
@@ -79,7 +79,7 @@ class Timer:
 
     @property
     def callback(self) -> Callable[..., Any] | None:
-        """Return the callback; it is called with a TimerInfo if a parameter is annotated so."""
+        """Return the callback; if it has a parameter annotated as TimerInfo, this is passed."""
         return self._callback
 
     @callback.setter
@@ -109,7 +109,7 @@ def _told_as(callback: Callable[..., Any]) -> str | None:
 
 
 class Rate:
-    """Keeps a loop at a frequency in Hz. Unlike rclpy's, it needs no second thread that spins."""
+    """Keeps a loop at a frequency in Hz. Unlike in rclpy, no second thread has to spin."""
 
     def __init__(self, node: Node, frequency: float) -> None:
         self._process = node.process
@@ -117,7 +117,7 @@ class Rate:
         self._due = self._process.scheduler.time + self._period
 
     def sleep(self) -> None:
-        """Wait for the end of the cycle. Raise ROSInterruptException when the node is shut down."""
+        """Wait until the cycle ends. Raise ROSInterruptException when the node is shut down."""
         clock = self._process.scheduler
         while clock.time < self._due and not self._process.ending:
             clock.wait(self._due)
@@ -128,4 +128,4 @@ class Rate:
             self._due += (1 + (clock.time - self._due) // self._period) * self._period
 
     def destroy(self) -> None:
-        """Stop it for good."""
+        """Stop the rate for good."""

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 _VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 
 
-MsgType = TypeVar("MsgType")  # rclpy's name, for annotations of nodes
+MsgType = TypeVar("MsgType")  # rclpy's name, which nodes use in annotations
 
 
 class MessageInfo(TypedDict):
-    """Times (ns) and numbers that a callback gets with a message."""
+    """Times (ns) and sequence numbers that callbacks receive with a message."""
 
     source_timestamp: int
     received_timestamp: int
@@ -57,7 +57,7 @@ class Publisher:
     topic = topic_name
 
     def publish(self, msg: Any) -> None:
-        """Publish a message, or one in serialised form. Raise TypeError for a message of another type."""
+        """Publish a message or its serialised form. Raise TypeError for a message of another type."""
         if self._destroyed:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
         if isinstance(msg, bytes):
@@ -77,7 +77,7 @@ class Publisher:
         return True
 
     def get_subscription_count(self) -> int:
-        """Return the number of subscriptions. The simulated world has one, too."""
+        """Return the number of subscriptions, including that of the simulated world."""
         return 1 + len(self._place.subscriptions)
 
     def destroy(self) -> None:
@@ -89,7 +89,7 @@ class Publisher:
 
 
 class Subscription:
-    """Queues messages for an executor, up to the depth of its profile."""
+    """Queues messages for an executor, up to the depth of the profile."""
 
     def __init__(
         self,
@@ -124,7 +124,7 @@ class Subscription:
     topic = topic_name
 
     def deliver(self, message: Any, _origin: Any = None) -> None:
-        """Queue a message, drop the oldest if full, and wake the node's executor."""
+        """Queue a message (dropping the oldest if the queue is full), and wake the node's executor."""
         self.queue.append(message)
         self.node.notify()
         if self.arrived is not None:
@@ -157,7 +157,7 @@ class Subscription:
                 "reception_sequence_number": None}  # fmt: skip
 
     def get_publisher_count(self) -> int:
-        """Return the number of publishers. The simulated world has one, too."""
+        """Return the number of publishers, including that of the simulated world."""
         return 1 + len(self._place.publications)
 
     def destroy(self) -> None:

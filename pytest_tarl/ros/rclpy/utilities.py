@@ -1,4 +1,4 @@
-"""rclpy.utilities: the context, ROS arguments, the middleware's name."""
+"""rclpy.utilities: the context, ROS arguments, and the name of the middleware."""
 
 # ruff: noqa: ARG001 (signatures are rclpy's)
 
@@ -24,19 +24,19 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def ok(*, context: Any = None) -> bool:
-    """Return whether ROS is up."""
+    """Return whether ROS is initialised and not shut down."""
     own = this_context("ok")
     asked()
     return own.ok()
 
 
 def shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Shut ROS down. Raise RuntimeError if ROS is not up."""
+    """Shut ROS down. Raise RuntimeError if it is not running."""
     this_context("shutdown").shutdown()
 
 
 def try_shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Shut ROS down unless it is down already."""
+    """Shut ROS down, unless it already is."""
     this_context("try_shutdown").try_shutdown()
 
 

@@ -27,7 +27,7 @@ def _require(problem: Problem | None, name: str, error: type[Any]) -> Literal[Tr
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
-    """Return True for a valid name of a topic. Raise InvalidTopicNameException or InvalidServiceNameException."""
+    """Return True for a valid topic name. Raise InvalidTopicNameException or InvalidServiceNameException."""
     error = InvalidServiceNameException if is_service else InvalidTopicNameException
     return _require(ros_names.topic_problem(name), name, error)
 
@@ -44,19 +44,19 @@ def validate_namespace(namespace: str) -> Literal[True]:
 
 
 def validate_node_name(node_name: str) -> Literal[True]:
-    """Return True for a valid name of a node. Raise InvalidNodeNameException."""
+    """Return True for a valid node name. Raise InvalidNodeNameException."""
     return _require(ros_names.node_problem(node_name), node_name, InvalidNodeNameException)
 
 
 def validate_parameter_name(name: str) -> Literal[True]:
-    """Return True for a valid name of a parameter. Raise InvalidParameterException."""
+    """Return True for a valid parameter name. Raise InvalidParameterException."""
     if not name:
         raise InvalidParameterException(name)
     return True
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """Return the absolute name of a topic that a node names."""
+    """Return the absolute name of a topic used in a node."""
     return names.expand(topic_name, names.absolute(f"{node_namespace}/{node_name}"))
 
 
@@ -66,7 +66,7 @@ def topic_or_service_is_hidden(name: str) -> bool:
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Do nothing for a class of messages, services or actions. Raise NoTypeSupportImportedException for others."""
+    """Accept classes of messages, services and actions. Raise NoTypeSupportImportedException for others."""
     parts = ("_fields_and_field_types", "Request", "Goal")
     if not any(hasattr(msg_or_srv_type, part) for part in parts):
         raise NoTypeSupportImportedException
@@ -83,5 +83,5 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Raise RuntimeError unless this is a class of services."""
+    """Raise RuntimeError unless `srv_type` is a service class."""
     _check("Request", "service", srv_type)

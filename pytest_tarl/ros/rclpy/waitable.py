@@ -1,4 +1,4 @@
-"""Entities besides topics, services and timers: guard conditions, and mailboxes for actions."""
+"""Entities other than topics, services and timers: guard conditions, and mailboxes for actions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class GuardCondition:
-    """Makes the executor run its callback once after any number of `trigger` calls."""
+    """Makes the executor run its callback once, however often `trigger` is called."""
 
     def __init__(self, node: Node, callback: Callable[[], Any] | None, group: Any) -> None:
         self.node = node
@@ -20,12 +20,12 @@ class GuardCondition:
         self._triggered = False
 
     def trigger(self) -> None:
-        """Request the callback."""
+        """Request a call of the callback."""
         self._triggered = True
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Return whether it was triggered since the callback last ran."""
+        """Return whether `trigger` was called since the callback last ran."""
         return self._triggered
 
     def run(self) -> Any:
@@ -34,12 +34,12 @@ class GuardCondition:
         return self.callback() if self.callback is not None else None
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Forget the trigger."""
         self._triggered = False
 
 
 class Mailbox:
-    """A queue of jobs for a node; its executor runs them one by one, first in, first out."""
+    """A node's queue of jobs; the executor runs them one by one, oldest first."""
 
     def __init__(self, node: Node, group: Any) -> None:
         self.node = node

@@ -1,7 +1,7 @@
 """rosidl_runtime_py.convert: messages as dictionaries, YAML and comma-separated values.
 
-`truncate_length` cuts sequences and strings after this number of elements. `no_arr` and `no_str` replace arrays and
-strings with a description of their type and length.
+`truncate_length` cuts sequences and strings off after this many elements. `no_arr` and `no_str` show the type and
+length of arrays and strings instead of their content.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def message_to_csv(
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Return the fields of a message in their order; messages inside become dictionaries, arrays become lists."""
+    """Return the fields of a message in order; nested messages become dictionaries, arrays become lists."""
     return _fields(msg, _Style(truncate_length, no_arr, no_str))
 
 
@@ -104,7 +104,7 @@ def _elements(values: Any, style: _Style, kind: str) -> Any:
 
 
 def _described(length: int, kind: str) -> str:
-    """Return the type and length of an array, to show instead of its elements."""
+    """Return the type and length of an array, shown instead of its elements."""
     if fixed := _ARRAY.match(kind):
         return f"<array type: {fixed['element']}[{fixed['size']}]>"
     sequence = _SEQUENCE.match(kind)
@@ -124,7 +124,7 @@ def _leaves(value: Any) -> Iterator[Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Return dictionaries and lists that YAML writes without tags."""
+    """Return only dictionaries and lists, which YAML writes without tags."""
     if isinstance(value, OrderedDict):
         return {name: _plain(one) for name, one in value.items()}
     return [_plain(one) for one in value] if isinstance(value, (list, tuple)) else value

@@ -22,13 +22,13 @@ _MESSAGES = re.compile(r"(sequence<)?(?P<element>\w+/(msg/)?\w+)(, *\d+)?(>|\[\d
 def set_message_fields(
     msg: Any, values: Mapping[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[Stamp]:
-    """Store the values of a dictionary, with dictionaries for the messages inside, in the fields of a message.
+    """Store a dictionary's values, with nested dictionaries for nested messages, in the fields of a message.
 
-    Return a function for each header given as `auto` and each time given as `now`, if these are expanded. The function
-    stores the time that is passed to it.
+    With the `expand_…` options, return a function for each header given as `auto` and each time given as `now`. It
+    stores the time that it is called with.
 
-    Raise TypeError if a message is not given as a dictionary, AttributeError for an unknown field, and ValueError for
-    a value that does not fit.
+    Raise TypeError if a message is not given as a dictionary, AttributeError for an unknown field, and ValueError for a
+    value that does not fit.
     """
     stamps: list[Stamp] = []
     _fill(msg, values, (expand_header_auto, expand_time_now), stamps)
@@ -53,7 +53,7 @@ def _fill(msg: Any, values: Any, expand: tuple[bool, bool], stamps: list[Stamp])
 
 
 def _filled(old: Any, value: Any, kind: str, expand: tuple[bool, bool], stamps: list[Stamp]) -> Any:
-    """Return a value in the type of the field that holds `old`."""
+    """Return a value in the type of the field whose value is `old`."""
     if isinstance(old, array.array):
         return array.array(old.typecode, value)
     if isinstance(old, np.ndarray):
@@ -67,7 +67,7 @@ def _filled(old: Any, value: Any, kind: str, expand: tuple[bool, bool], stamps: 
 
 
 def _made(message: Any, value: Any, expand: tuple[bool, bool], stamps: list[Stamp]) -> Any:
-    """Return a value that is a message already, or `message` with the values of a dictionary."""
+    """Return the value if it is a message, or `message` filled with the values of a dictionary."""
     if isinstance(value, type(message)):
         return value
     _fill(message, value, expand, stamps)

@@ -1,4 +1,4 @@
-"""rosidl_runtime_py.utilities: types of messages, services and actions by their names."""
+"""rosidl_runtime_py.utilities: look up message, service and action types by name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 def get_interface(identifier: str) -> Any:
     """Return the type with a name such as `std_msgs/msg/String`.
 
-    Raise ValueError for a name of another form, and ModuleNotFoundError or AttributeError if the type is unknown.
+    Raise ValueError if the name has another form, and ModuleNotFoundError or AttributeError if the type is unknown.
     """
     package, *middle, short = identifier.split("/") if "/" in identifier else ("", identifier)
     if not package or not short or len(middle) > 1 or (middle and middle[0] not in _PARTS):
@@ -41,17 +41,17 @@ def get_interface(identifier: str) -> Any:
 
 
 def get_message(identifier: str) -> Any:
-    """Return a message type by its name. Raise what `get_interface` raises, and ValueError for another kind of type."""
+    """Return a message type by name. Raise the errors of `get_interface`, and ValueError for other types."""
     return _of_kind(identifier, "message", is_message)
 
 
 def get_service(identifier: str) -> Any:
-    """Return a service type by its name. Raise what `get_interface` raises, and ValueError for another kind of type."""
+    """Return a service type by name. Raise the errors of `get_interface`, and ValueError for other types."""
     return _of_kind(identifier, "service", is_service)
 
 
 def get_action(identifier: str) -> Any:
-    """Return an action type by its name. Raise what `get_interface` raises, and ValueError for another kind of type."""
+    """Return an action type by name. Raise the errors of `get_interface`, and ValueError for other types."""
     return _of_kind(identifier, "action", is_action)
 
 

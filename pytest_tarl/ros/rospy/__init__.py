@@ -1,4 +1,4 @@
-"""Stand-in for rospy: same names, virtual clock, no network."""
+"""Stand-in for rospy, with the same names, a virtual clock and no network."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ from pytest_tarl.ros.rospy.topics import (
 
 
 def get_master() -> Any:
-    """Return a proxy of the master, which answers with (code, status, value)."""
+    """Return a proxy for the master, which answers with (code, status, value)."""
     from pytest_tarl.ros.tools.rosgraph import MasterProxy
 
     return MasterProxy()

@@ -1,4 +1,4 @@
-"""`rospy.core`: the functions of rospy, and functions for the state of a node that `rospy` itself does not have."""
+"""`rospy.core`: rospy's functions, and some for a node's state that `rospy` does not have."""
 
 from __future__ import annotations
 

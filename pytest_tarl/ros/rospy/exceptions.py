@@ -34,7 +34,7 @@ class TransportInitError(TransportException):
 class ROSInterruptException(ROSException, KeyboardInterrupt):
     """A blocking call was interrupted by the node's shutdown."""
 
-    tarl_shutdown = True  # this exception ends a node normally, so it is not reported
+    tarl_shutdown = True  # a normal end of a node, which is not reported
 
 
 class ROSTimeMovedBackwardsException(ROSInterruptException):

@@ -1,4 +1,4 @@
-"""rospy's logging functions; they use Python's logger `rosout`, so that pytest captures them."""
+"""rospy's logging functions, on top of Python's logger `rosout`, so that pytest captures them."""
 
 # ruff: noqa: ARG001 (signatures are rospy's)
 
@@ -17,7 +17,7 @@ Log = Callable[..., None]
 
 
 class LogMemory:
-    """State of the `_once` and `_throttle` functions in a process, by call site."""
+    """The state of the `_once` and `_throttle` functions of a process, by call site."""
 
     def __init__(self, process: Process) -> None:
         self._clock = process.scheduler
@@ -30,7 +30,7 @@ class LogMemory:
         return new
 
     def due(self, key: Any, period: float) -> bool:
-        """Return whether `period` seconds have passed since the call was last due."""
+        """Return whether at least `period` seconds have passed since this last returned True."""
         last = self._seen.get(key)
         if last is not None and self._clock.time - last < nanoseconds(period):
             return False

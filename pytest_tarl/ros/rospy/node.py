@@ -40,9 +40,9 @@ class RospyNode:
         return names.resolve(name, self.name, self.remappings)
 
     def require_registrable(self, name: str, kind: str) -> None:
-        """End the episode with an error if the ROS master would refuse to register a topic or service of that name.
+        """End the episode with an error if the ROS master would reject a topic or service of this name.
 
-        rospy then logs the refusal and shuts the node down.
+        rospy would log the rejection and shut the node down.
         """
         if is_refused_by_master(name):
             scheduler = self.process.scheduler
@@ -71,7 +71,7 @@ class RospyNode:
             raise ROSInitException("time is not initialized. Have you called init_node()?")
 
     def run_hooks(self) -> None:
-        """Call the shutdown hooks in a task of this process; all run even if one fails."""
+        """Call the shutdown hooks in a task of this process; if one fails, the others still run."""
         if self.in_hooks:
             return
         self.in_hooks = True
@@ -101,7 +101,7 @@ def this_node(api: str) -> RospyNode:
 
 
 def warn_if_illegal(name: str, *, stacklevel: int) -> None:
-    """Warn about a name of a topic, service or parameter that breaks the rules, as rospy does."""
+    """Warn, as rospy does, about a topic, service or parameter name that breaks the rules."""
     if name and not is_legal_ros1(name):
         warnings.warn(
             f"'{name}' is not a legal ROS graph resource name. This may cause problems with other ROS tools",
@@ -123,7 +123,7 @@ def init_node(
 ) -> None:
     """Register the node under its name.
 
-    Raise ValueError for an invalid name, ROSException on a second call with different arguments.
+    Raise ValueError for an invalid name, and ROSException for a second call with different arguments.
     """
     if not name:
         raise ValueError("name must not be empty")
@@ -144,14 +144,14 @@ def init_node(
 
 
 def is_shutdown() -> bool:
-    """Return whether the node is being shut down."""
+    """Return whether the node is shutting down."""
     process = current_process("rospy.is_shutdown")
     asked()
     return process.ending
 
 
 def signal_shutdown(reason: str) -> None:
-    """Shut the node down: call hooks now, then interrupt every wait of the node."""
+    """Shut the node down: call the hooks now, then interrupt every wait of the node."""
     process = current_process("rospy.signal_shutdown")
     if not process.ending:
         process.part(RospyNode)
@@ -159,14 +159,14 @@ def signal_shutdown(reason: str) -> None:
 
 
 def on_shutdown(h: ShutdownHook) -> None:
-    """Register a function to be called at shutdown. Raise TypeError if the argument is not callable."""
+    """Register a function for shutdown. Raise TypeError if it is not callable."""
     if not callable(h):
         raise TypeError(f"shutdown hook [{h}] must be a function or callable object: {type(h)}")
     this_node("on_shutdown").hooks.append(h)
 
 
 def spin() -> None:
-    """Wait until the node is shut down; callbacks run in the meantime. Raise ROSInitException before init_node."""
+    """Wait until the node is shut down, while callbacks run. Raise ROSInitException before init_node."""
     node = this_node("spin")
     if not node.initialised:
         raise ROSInitException("client code must call rospy.init_node() first")
@@ -185,7 +185,7 @@ def get_caller_id() -> str:
 
 
 def get_namespace() -> str:
-    """Return the node's namespace, with a slash at the end."""
+    """Return the node's namespace with a trailing slash."""
     namespace = this_node("get_namespace").namespace
     return namespace if namespace == "/" else namespace + "/"
 

@@ -1,4 +1,4 @@
-"""`numpy_msg(Type)`: received messages hold numpy arrays in place of tuples of numbers."""
+"""`numpy_msg(Type)`: received messages have numpy arrays instead of tuples of numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["numpy_msg"]
 
 @cache
 def numpy_msg(msg_type: Any) -> Any:
-    """Return a class of the same type whose received messages hold numpy arrays."""
+    """Return a class of the same type whose received messages have numpy arrays."""
     names = {slot: kind.partition("[")[0] for slot, kind in zip(msg_type.__slots__, msg_type._slot_types, strict=True)
              if "[" in kind and kind.partition("[")[0] in CODES}  # fmt: skip
 

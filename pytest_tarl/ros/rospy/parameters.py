@@ -1,4 +1,4 @@
-"""rospy's functions for parameters."""
+"""rospy's parameter functions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _server(api: str) -> tuple[RospyNode, ParameterServer]:
 
 
 def get_param(param_name: str, default: Any = _NOTHING) -> Any:
-    """Return a parameter. Raise KeyError if the parameter is not set and there is no default."""
+    """Return a parameter. Raise KeyError if it is not set and has no default."""
     asked()
     node, server = _server("get_param")
     name = node.resolve(param_name)
@@ -55,14 +55,14 @@ def has_param(param_name: str) -> bool:
 
 
 def delete_param(param_name: str) -> None:
-    """Remove a parameter. Raise KeyError if the parameter is not set."""
+    """Remove a parameter. Raise KeyError if it is not set."""
     node, server = _server("delete_param")
     if not server.delete(node.resolve(param_name)):
         raise KeyError(param_name)
 
 
 def search_param(param_name: str) -> str | None:
-    """Return the full name of the nearest parameter of that name, from the node's own namespace upwards."""
+    """Return the full name of the nearest parameter of this name, from the node's namespace upwards."""
     asked()
     node, server = _server("search_param")
     path = keys_of(node.name)

@@ -65,11 +65,11 @@ class Service:
             self.process.scheduler.wait()
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Handle a request in a task of this node; `answer` gets the response, or a Refusal if the handler failed."""
+        """Handle a request in a task of this node; `answer` gets the response, or a Refusal if the handler fails."""
         self.process.scheduler.spawn(self.process, self._serve, request, answer)
 
     def _serve(self, request: Any, answer: Answer) -> None:
-        """Handle a request; as in rospy, an exception of the handler fails the call but does not end the node."""
+        """Handle a request; as in rospy, an exception in the handler fails the call, but does not end the node."""
         try:
             response = self._as_response(self.handler(request))
             response = None if response is None else snapshot(response)
@@ -141,7 +141,7 @@ class ServiceProxy:
         return adapted(answered, self.response_class)
 
     def wait_for_service(self, timeout: float | None = None) -> None:
-        """Wait until the service is available. Raise ROSException after `timeout` seconds."""
+        """Wait for the service. Raise ROSException after `timeout` seconds."""
         wait_for_service(self.resolved_name, timeout)
 
     def close(self) -> None:
@@ -149,7 +149,7 @@ class ServiceProxy:
 
 
 def wait_for_service(service: str, timeout: Any = None) -> None:
-    """Wait until a service is available. Raise ROSException after `timeout` seconds."""
+    """Wait for a service. Raise ROSException after `timeout` seconds."""
     node = this_node("wait_for_service")
     name = node.resolve(service)
     seconds = getattr(timeout, "to_sec", lambda: timeout)()

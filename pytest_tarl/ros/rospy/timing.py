@@ -1,4 +1,4 @@
-"""rospy's instants, durations, rates, sleep and timers, all on the virtual clock."""
+"""rospy's times, durations, rates, sleep and timers, all on the virtual clock."""
 
 # ruff: noqa: ARG002 (signatures are rospy's)
 
@@ -18,7 +18,7 @@ from pytest_tarl.ros.rospy.node import RospyNode, this_node
 
 
 class Duration(times.Duration):
-    """A span of time."""
+    """A duration."""
 
     __slots__: list[str] = []
 
@@ -27,7 +27,7 @@ class Duration(times.Duration):
 
 
 class Time(times.Time):
-    """An instant of the virtual clock."""
+    """A time on the virtual clock."""
 
     __slots__: list[str] = []
 
@@ -41,7 +41,7 @@ class Time(times.Time):
 
     @classmethod
     def from_seconds(cls, float_secs: float) -> Time:
-        """Create an instant from float seconds."""
+        """Create a time from float seconds."""
         return cls(float(float_secs))
 
 
@@ -74,7 +74,7 @@ def _sleep_until(node: RospyNode, until: int) -> None:
     if process.ending:
         process.refuse_to_wait()
     if process.ending and node.in_hooks:
-        return  # in shutdown hooks, virtual time stands still
+        return  # virtual time stands still in shutdown hooks
     if until <= process.scheduler.time:
         asked()
     if until >= process.scheduler.time and not process.ending:
@@ -96,20 +96,20 @@ class Rate:
 
     @property
     def sleep_dur(self) -> Duration:
-        """The length of a cycle."""
+        """Return the length of a cycle."""
         return Duration(0, self._period)
 
     @property
     def last_time(self) -> Time:
-        """The beginning of the current cycle."""
+        """Return the start of the current cycle."""
         return Time(0, self._last)
 
     def remaining(self) -> Duration:
-        """Return the remaining time of the current cycle."""
+        """Return how much time is left in the current cycle."""
         return Duration(0, self._period - (self._clock.time - self._last))
 
     def sleep(self) -> None:
-        """Wait for the end of the current cycle; catch up on late cycles, at most two.
+        """Wait until the current cycle ends; catch up on at most two late cycles.
 
         Raise ROSInterruptException when the node is shut down.
         """
@@ -127,7 +127,7 @@ class Rate:
 
 @dataclass
 class TimerEvent:
-    """The argument of a timer's callback; times are rospy.Time, `last_duration` is in float seconds."""
+    """The argument of timer callbacks; times are rospy.Time, `last_duration` is in float seconds."""
 
     last_expected: Time | None
     last_real: Time | None
@@ -137,7 +137,7 @@ class TimerEvent:
 
 
 class Timer:
-    """Calls `callback(TimerEvent)` every `period`, a Duration."""
+    """Calls `callback(TimerEvent)` every `period` (a Duration)."""
 
     daemon = True
 
@@ -198,7 +198,7 @@ class Timer:
 
 
 def is_wallclock() -> bool:
-    """Return False: time is that of the episode."""
+    """Return False: the time is that of the episode."""
     return False
 
 
@@ -222,5 +222,5 @@ def wallsleep(duration: float) -> None:
 
 
 def wallclock() -> float:
-    """Return the current virtual time in float seconds: there is no other clock."""
+    """Return the virtual time in float seconds: there is no other clock."""
     return get_time()

@@ -22,7 +22,7 @@ DEFAULT_BUFF_SIZE = 65536
 
 
 class AnyMsg:
-    """A type for subscriptions to topics of any type; messages arrive in their own class."""
+    """Subscribes to topics of any type; messages arrive in their own class."""
 
     _type = "*"
     _md5sum = "*"
@@ -30,20 +30,20 @@ class AnyMsg:
 
 
 class Inbox:
-    """All subscriptions of one process to one topic; handles one message at a time, as rospy's thread does."""
+    """A process's subscriptions to one topic; handles one message at a time, like rospy's thread."""
 
     def __init__(self, process: Process, topic: str, message_type: type | None) -> None:
         self.process = process
         self.topic = topic
         self.message_type = message_type
         self.callbacks: list[Callback] = []
-        self.subscribers = 0  # number of Subscriber objects that are not unregistered
+        self.subscribers = 0  # number of Subscriber objects, without unregistered ones
         self.capacity: int | None = None
         self._waiting: deque[Any] = deque()
         self._busy = False
 
     def deliver(self, message: Any, origin: Any = None) -> None:
-        """Run the callbacks with a message; queue it while they handle an earlier message."""
+        """Call the callbacks with a message, or queue it while they handle an earlier one."""
         if self.process.ending:
             return
         if self.message_type is None and (kind := _with_bytes(type(message))) is not type(message):
@@ -74,13 +74,13 @@ class Inbox:
                 callback(message, arguments)
 
 
-_WITH_BYTES: dict[Any, Any] = {}  # class of an installed ROS → class of `_with_bytes`
+_WITH_BYTES: dict[Any, Any] = {}  # class of an installed ROS → class from `_with_bytes`
 
 
 def _with_bytes(message_type: Any) -> Any:
-    """Return a message class whose instances have `_buff`, the serialised message, which subscribers to AnyMsg read.
+    """Return a message class with `_buff`, the serialised message, which subscribers to AnyMsg read.
 
-    Only classes of an installed ROS 1 lack `_buff`; other classes are returned unchanged.
+    Only classes of an installed ROS 1 need this; all others are returned unchanged.
     """
     if hasattr(message_type, "_buff") or not hasattr(message_type, "serialize"):
         return message_type
@@ -97,7 +97,7 @@ def _with_bytes(message_type: Any) -> Any:
 
 
 def _connection_header(topic: str, message_type: Any, origin: Any) -> dict[str, str]:
-    """Return the connection header that a subscriber gets from a publisher; the world has the node name `/world`."""
+    """Return the connection header that a publisher sends to a subscriber; the world is the node `/world`."""
     own = getattr(origin, "connection_header", {"callerid": "/world", "latching": "0"})
     return {**own, "topic": topic, "type": message_type._type, "md5sum": message_type._md5sum}
 
@@ -112,7 +112,7 @@ class Inboxes:
     def open(
         self, topic: str, message_type: type | None, callback: Callback | None, capacity: int | None
     ) -> Inbox:
-        """Add a callback to the inbox of a topic; connect the inbox on first use."""
+        """Add a callback to a topic's inbox, which is connected when first needed."""
         inbox = self._by_topic.get(topic)
         new = inbox is None
         if inbox is None:
@@ -126,7 +126,7 @@ class Inboxes:
         return inbox
 
     def close(self, inbox: Inbox, callback: Callback | None) -> None:
-        """Remove a callback; disconnect the inbox when its last subscriber leaves, so that the next connects anew."""
+        """Remove a callback; disconnect the inbox after its last subscriber, so that the next one connects anew."""
         if callback in inbox.callbacks:
             inbox.callbacks.remove(callback)
         inbox.subscribers -= 1
@@ -136,7 +136,7 @@ class Inboxes:
 
 
 class Topic:
-    """Common base of publishers and subscribers."""
+    """The base of publishers and subscribers."""
 
     def __init__(self, name: str, data_class: Any, api: str) -> None:
         if not name or not isinstance(name, str):
@@ -158,7 +158,7 @@ class Topic:
         return self._closed or (self._process.ending and not self._node.in_hooks)
 
     def get_num_connections(self) -> int:
-        """Return the number of connections. The simulated world counts as one, on every topic."""
+        """Return the number of connections; the simulated world counts as one on every topic."""
         return 1 + len(self._peers())
 
     def _peers(self) -> list[Any]:
@@ -198,14 +198,14 @@ class Publisher(Topic):
     def connection_header(self) -> dict[str, str]:
         """Return the connection header for subscribers.
 
-        The header is computed on request, since `init_node` may be called after the publisher is created.
+        It is computed on request, because `init_node` may come after the publisher is created.
         """
         return {**self._headers, "callerid": self._node.name, "latching": str(self._latch)}
 
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Publish a message, or create one from fields given by position or keyword.
 
-        Raise ROSSerializationException for an invalid message, ROSException if it cannot be published now.
+        Raise ROSSerializationException for an invalid message, and ROSException if it cannot be published now.
         """
         if self._closed:
             raise ROSException("publish() to an unregistered() handle")
@@ -288,7 +288,7 @@ class Subscriber(Topic):
 
 
 class SubscribeListener:
-    """Base class for listeners that are notified when a node (not the simulated world) subscribes."""
+    """Base class of listeners that are told when a node (not the simulated world) subscribes."""
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
         """Do nothing by default."""
@@ -323,7 +323,7 @@ def wait_for_message(topic: str, topic_type: Any, timeout: float | None = None) 
 
 
 def get_published_topics(namespace: str = "/") -> list[list[str]]:
-    """Return the topics that nodes publish on, with their types."""
+    """Return the topics on which nodes publish, with their types."""
     bus = this_node("get_published_topics").process.bus
     return [[place.name, place.publications[0].type] for place in bus.topics() if place.publications
             and place.name.startswith(namespace)]  # fmt: skip

@@ -1,4 +1,4 @@
-"""smach: state machines of tasks. The states of a Concurrence run as tasks of the virtual clock."""
+"""smach: state machines of tasks. The states of a Concurrence run as tasks on the virtual clock."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ _PARTS = {
 def cb_interface(
     outcomes: Iterable[str] = (), input_keys: Iterable[str] = (), output_keys: Iterable[str] = ()
 ) -> Callable[[Any], Any]:
-    """Return a decorator that declares the outcomes and keys of a function."""
+    """Return a decorator that declares a function's outcomes and keys."""
 
     def declare(function: Any) -> Any:
         function._smach_outcomes = list(outcomes)
@@ -34,7 +34,7 @@ def has_smach_interface(cb: Any) -> bool:
 
 
 def declare_interface(state: State, cb: Any) -> None:
-    """Add the outcomes and keys that a function declares to a state."""
+    """Add a function's declared outcomes and keys to a state."""
     for part, method in _PARTS.items():
         getattr(state, method)(getattr(cb, part, ()))
 

@@ -16,7 +16,7 @@ Outcomes = Mapping[str, str | None]
 
 
 class Concurrence(Container):
-    """All states start together. `outcome_cb`, `outcome_map` or the default maps their outcomes to one outcome."""
+    """Starts all states together. `outcome_cb`, `outcome_map` or the default turns their outcomes into one."""
 
     def __init__(
         self,
@@ -32,7 +32,7 @@ class Concurrence(Container):
         self._default = default_outcome
         self._map = dict(outcome_map or {})
         self._outcome_cb, self._child_cb = outcome_cb, child_termination_cb
-        self._ended: dict[str, str | None] = {}  # outcomes by label; None while a state runs
+        self._ended: dict[str, str | None] = {}  # outcomes by label; None while a state is running
 
     @staticmethod
     def add(label: str, state: Any, remapping: Mapping[str, str] | None = None) -> Any:
@@ -40,7 +40,7 @@ class Concurrence(Container):
         return Concurrence.opened().insert(label, state, remapping)
 
     def check_consistency(self) -> None:
-        """Raise InvalidTransitionError if the default or the map names an outcome or a state that does not exist."""
+        """Raise InvalidTransitionError if the default or the map names an unknown outcome or state."""
         for outcome in (self._default, *self._map):
             if outcome not in self._outcomes:
                 raise InvalidTransitionError(f"Concurrence has no outcome '{outcome}'.")

@@ -18,7 +18,7 @@ from pytest_tarl.ros.smach.userdata import Remapper, UserData
 
 
 class Container(State):
-    """A state with child states. `with container:` opens it, so that `add` puts states into it."""
+    """A state with child states. Inside `with container:`, `add` adds states to it."""
 
     _open: ClassVar[list[Container]] = []
 
@@ -49,14 +49,14 @@ class Container(State):
         if error is None:
             try:
                 self.check_consistency()
-            except SmachError as incomplete:  # only logged here, because execute() raises the error again
+            except SmachError as incomplete:  # only logged here, because execute() raises it again
                 logerr(f"Container consistency check failed: {incomplete}")
 
     @classmethod
     def opened(cls) -> Any:
         """Return the open container.
 
-        Raise InvalidStateError if no container is open or the open container is not of this class.
+        Raise InvalidStateError if no container of this class is open.
         """
         if not Container._open:
             raise InvalidStateError("Attempting to add to a container, but no container is currently open.")
@@ -68,7 +68,7 @@ class Container(State):
         return Container._open[-1]
 
     def insert(self, label: str, state: Any, remapping: Mapping[str, str] | None) -> Any:
-        """Add a state. Raise InvalidStateError if the label is taken or the state has no `execute`."""
+        """Add a state. Raise InvalidStateError if the label is taken, or the state has no `execute`."""
         if label in self._states:
             raise InvalidStateError(
                 f"Attempting to add a state with label '{label}', which is in use already."
@@ -101,7 +101,7 @@ class Container(State):
         return list(self._initial_labels)
 
     def set_initial_state(self, initial_states: Sequence[str], userdata: UserData | None = None) -> None:
-        """Set the labels of the states that run first, and add userdata."""
+        """Set the labels of the first states, and add userdata."""
         self._initial_labels = list(initial_states)
         if userdata is not None:
             self.userdata.update(userdata)
@@ -125,7 +125,7 @@ class Container(State):
         self._callbacks.setdefault("termination", []).append((termination_cb, cb_args))
 
     def call_back(self, when: str, *values: Any) -> None:
-        """Call the functions registered for an event; an error in one is logged, and the container continues."""
+        """Call the functions registered for an event; errors are logged, and the container continues."""
         for callback, rest in self._callbacks.get(when, ()):
             self._call_one(when, callback, (*values, *rest))
 
@@ -138,7 +138,7 @@ class Container(State):
             logerr(f"A {when} callback of a container raised {type(error).__name__}: {text_of(error)}")
 
     def run_child(self, label: str) -> str:
-        """Execute a state, and return its outcome. Raise InvalidTransitionError if the outcome is not declared."""
+        """Execute a state and return its outcome. Raise InvalidTransitionError if it is not declared."""
         state = self._states[label]
         reads, writes = state.get_registered_input_keys(), state.get_registered_output_keys()
         outcome = state.execute(Remapper(self.userdata, reads, writes, self._remappings[label]))

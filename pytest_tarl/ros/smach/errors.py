@@ -20,4 +20,4 @@ class InvalidConstructionError(SmachError):
 
 
 class InvalidUserCodeError(SmachError):
-    """A state reads or writes userdata that it does not declare, or raised an error."""
+    """A state uses userdata that it does not declare, or raised an error."""

@@ -12,7 +12,7 @@ from pytest_tarl.ros.smach.userdata import UserData
 
 
 class Iterator(Container):
-    """Runs one state for each item of `it`, which the state reads under `it_label`."""
+    """Runs a state for each item of `it`, which the state reads as `it_label`."""
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class Iterator(Container):
         break_outcomes: Iterable[str] = (),
         final_outcome_map: Mapping[str, str] | None = None,
     ) -> None:
-        """Set the state of the open iterator, the outcomes after which it continues, and those that end it."""
+        """Set the open iterator's state, the outcomes on which it continues, and those that end it."""
         iterator: Iterator = Iterator.opened()
         iterator._states.clear()
         iterator.insert(label, state, None)
@@ -45,11 +45,11 @@ class Iterator(Container):
         iterator._final = dict(final_outcome_map or {})
 
     def set_iteritems(self, it: Any, it_label: str) -> None:
-        """Set the items, and the key under which the state reads the current one."""
+        """Set the items, and the key of the current item."""
         self._items, self._key = it, it_label
 
     def check_consistency(self) -> None:
-        """Raise InvalidTransitionError if there is no state, or if a final outcome is not one of the iterator's."""
+        """Raise InvalidTransitionError if there is no state, or if the iterator lacks a final outcome."""
         if not self._states:
             raise InvalidTransitionError("No contained state of the iterator was set.")
         for outcome in self._break:

@@ -13,7 +13,7 @@ def set_loggers(info: Any, warn: Any, debug: Any, error: Any) -> None:
 
 
 def set_shutdown_check(cb: Callable[[], bool]) -> None:
-    """Ignore the given check; state machines end when the node ends."""
+    """Ignore the given check; state machines end with the node."""
 
 
 def is_shutdown() -> bool:

@@ -14,7 +14,7 @@ Transitions = Mapping[str, str | None]
 
 
 class StateMachine(Container):
-    """States whose outcomes lead to another state or to an outcome of the machine."""
+    """States whose outcomes lead to another state, or to an outcome of the machine."""
 
     def __init__(
         self,
@@ -24,9 +24,9 @@ class StateMachine(Container):
     ) -> None:
         super().__init__(outcomes, input_keys, output_keys)
         self._transitions: dict[str, dict[str, str | None]] = {}
-        # last state of add_auto, and its outcomes to connect
+        # last state added by add_auto, and its outcomes still to be connected
         self._chained: tuple[str, list[str]] | None = None
-        self._preempted: Any = None  # state to which the request to end was passed on
+        self._preempted: Any = None  # state that was asked to end
 
     @staticmethod
     def add(
@@ -35,7 +35,7 @@ class StateMachine(Container):
         transitions: Transitions | None = None,
         remapping: Mapping[str, str] | None = None,
     ) -> Any:
-        """Add a state to the open machine. An outcome without a transition ends the machine with that outcome."""
+        """Add a state to the open machine. An outcome without a transition ends the machine."""
         return StateMachine.opened()._add(label, state, transitions, remapping)
 
     @staticmethod
@@ -46,7 +46,7 @@ class StateMachine(Container):
         transitions: Transitions | None = None,
         remapping: Mapping[str, str] | None = None,
     ) -> Any:
-        """Add a state whose `connector_outcomes` lead to the state that is added next."""
+        """Add a state whose `connector_outcomes` lead to the next state that is added."""
         machine: StateMachine = StateMachine.opened()
         added = machine._add(label, state, transitions, remapping)
         machine._chained = (label, list(connector_outcomes))
@@ -75,7 +75,7 @@ class StateMachine(Container):
         return added
 
     def check_consistency(self) -> None:
-        """Raise InvalidTransitionError if an outcome of a state leads nowhere or the initial state is missing."""
+        """Raise InvalidTransitionError if an outcome leads nowhere or the initial state is missing."""
         known = {*self._states, *self._outcomes}
         lost = [
             f"'{label}':'{outcome}'" + (f" → '{target}'" if target else "")
@@ -96,7 +96,7 @@ class StateMachine(Container):
             )  # fmt: skip
 
     def get_internal_edges(self) -> list[tuple[str, str, str]]:
-        """Return (outcome, from, to) for each transition; `to` is "None" for an outcome that leads nowhere."""
+        """Return (outcome, from, to) for each transition; `to` is "None" if the outcome leads nowhere."""
         return [
             (outcome, label, str(target))
             for label, transitions in self._transitions.items()
@@ -129,7 +129,7 @@ class StateMachine(Container):
         return outcome
 
     def _update(self, label: str) -> tuple[str, str | None]:
-        """Execute a state. Return this state and the machine's outcome, or the next state and None."""
+        """Execute a state. Return it with the machine's outcome, or the next state with None."""
         if self.preempt_requested():
             self._pass_on_preempt(label)
         result = self.run_child(label)
@@ -171,7 +171,7 @@ class StateMachine(Container):
 
 
 class Sequence(StateMachine):
-    """A machine in which each state leads to the next by `connector_outcome`."""
+    """A machine in which `connector_outcome` leads from each state to the next."""
 
     def __init__(
         self,
@@ -190,7 +190,7 @@ class Sequence(StateMachine):
         transitions: Transitions | None = None,
         remapping: Mapping[str, str] | None = None,
     ) -> Any:
-        """Add the next state. The last state ends the sequence with `connector_outcome`."""
+        """Add the next state; after the last state, `connector_outcome` ends the sequence."""
         sequence: Sequence = Sequence.opened()
         added = sequence._add(label, state, transitions, remapping)
         if sequence._connector in state.get_registered_outcomes() and sequence._connector not in (

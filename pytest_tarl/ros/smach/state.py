@@ -22,7 +22,7 @@ class State:
         self._preempt_requested = False
 
     def execute(self, ud: Any) -> Any:
-        """Do the work of the state, and return its outcome."""
+        """Do the state's work, and return its outcome."""
         raise NotImplementedError
 
     def register_outcomes(self, new_outcomes: Iterable[str]) -> None:
@@ -63,9 +63,9 @@ class State:
         self._preempt_requested = False
 
     def recall_preempt(self) -> None:
-        """Withdraw the request."""
+        """Withdraw the request to end."""
         self._preempt_requested = False
 
     def preempt_requested(self) -> bool:
-        """Return whether the state is asked to end."""
+        """Return whether the state was asked to end."""
         return self._preempt_requested

@@ -1,4 +1,4 @@
-"""Userdata: named values that states pass on, and the view that a state has of them."""
+"""Userdata: named values that states pass on, and each state's view of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.ros.smach.errors import InvalidUserCodeError
 
 
 class UserData:
-    """Values by key, as attributes and as items."""
+    """Values by key, accessible as attributes and items."""
 
     def __init__(self) -> None:
         self._data: dict[str, Any] = {}
@@ -19,13 +19,13 @@ class UserData:
         self._data.update(ud._data)
 
     def extract(self, keys: Iterable[str], remapping: Mapping[str, str]) -> UserData:
-        """Return the values of `keys`, stored under the remapped names."""
+        """Return the values of `keys` under their remapped names."""
         part = UserData()
         part.merge(self, keys, remapping)
         return part
 
     def merge(self, ud: Any, keys: Iterable[str], remapping: Mapping[str, str]) -> None:
-        """Copy the values of `keys` from another userdata, under the remapped names; skip keys without a value."""
+        """Copy the values of `keys` from another userdata, under remapped names; skip keys without a value."""
         for key in keys:
             name = remapping.get(key, key)
             if key in ud:
@@ -45,7 +45,7 @@ class UserData:
         self._data[key] = item
 
     def __getattr__(self, name: str) -> Any:
-        """Return a value; KeyError if there is none, as in smach. Names that begin with an underscore are not keys."""
+        """Return a value. As in smach, raise KeyError if there is none. Names that start with _ are not keys."""
         if name.startswith("_"):
             raise AttributeError(name)
         return self._data[name]
@@ -58,7 +58,7 @@ class UserData:
 
 
 class Remapper:
-    """A state's view of userdata: it uses its own names, can read its input keys and can write its output keys."""
+    """A state's view of userdata: its own names, input keys to read, and output keys to write."""
 
     def __init__(
         self,
@@ -72,7 +72,7 @@ class Remapper:
         self._map = dict(remapping or {})
 
     def keys(self) -> list[str]:
-        """Return the input keys that have a value."""
+        """Return the input keys with a value."""
         return [key for key in sorted(self._input) if key in self]
 
     def __contains__(self, key: str) -> bool:

@@ -13,7 +13,7 @@ from pytest_tarl.ros.rospy.timing import Duration, get_time
 from pytest_tarl.ros.smach.state import State
 from pytest_tarl.ros.smach_ros import slots
 
-_LOOK = 0.1  # time between two checks whether the state must end (s)
+_LOOK = 0.1  # seconds between two checks whether the state must end
 
 
 class SimpleActionState(State):
@@ -45,7 +45,7 @@ class SimpleActionState(State):
         super().__init__(["succeeded", "aborted", "preempted", *outcomes], input_keys, output_keys)
         self._name, self._client = action_name, SimpleActionClient(action_name, action_spec)
         empty = action_spec().action_goal.goal
-        if callable(goal) and goal_cb is None:  # an older form of the call: the callback is passed as `goal`
+        if callable(goal) and goal_cb is None:  # an older form of the call passes the callback as `goal`
             goal, goal_cb = None, goal
         self._goal = empty if goal is None else goal
         self._goal_key, self._goal_slots = goal_key, list(goal_slots)
@@ -90,7 +90,7 @@ class SimpleActionState(State):
         return "aborted"
 
     def _wait_for_result(self) -> bool:
-        """Wait for the end of the goal; cancel it on request or at the time limit.
+        """Wait for the goal to end; cancel it on request or after the time limit.
 
         Return whether the end was requested.
         """

@@ -12,7 +12,7 @@ from pytest_tarl.ros.smach.container import Container
 
 
 class IntrospectionServer:
-    """Publish the structure of a container and of nested ones, and their active states after each transition."""
+    """Publish the structure of a container and its nested ones, and the active states after each transition."""
 
     def __init__(self, server_name: str, state: Any, path: str) -> None:
         self._name, self._state, self._path = server_name, state, path

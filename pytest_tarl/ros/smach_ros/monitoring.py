@@ -1,4 +1,4 @@
-"""States that watch a topic or a condition, and a function that ends a container when the node ends."""
+"""States that watch a topic or a condition, and a function that ends a container with its node."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ _LOOK = Duration(0.05)
 
 
 class MonitorState(State):
-    """Calls `cond_cb(userdata, message)` for each message of a topic, until it returns a false value.
+    """Calls `cond_cb(userdata, message)` for each message on a topic, until it returns a false value.
 
-    The outcomes of the state are "invalid" after a false value, "valid" after `max_checks` messages, and
-    "preempted".
+    The outcome is "invalid" after a false value, "valid" after `max_checks` messages, or "preempted".
     """
 
     def __init__(
@@ -65,8 +64,8 @@ class MonitorState(State):
 class ConditionState(State):
     """Calls `cond_cb(userdata)` until it returns a true value.
 
-    Its outcomes are "true" in that case, "false" after `timeout` or one call more than `max_checks`, as in smach_ros,
-    and "preempted". With -1, the number of calls has no limit.
+    The outcome is then "true". It is "false" after `timeout` or, as in smach_ros, after one call more than `max_checks`
+    (-1: no limit). It can also be "preempted".
     """
 
     def __init__(
@@ -101,7 +100,7 @@ class ConditionState(State):
 
 
 def set_preempt_handler(sc: Any) -> None:
-    """Ask a container to end when the node ends."""
+    """Ask a container to end when its node ends."""
 
     def end() -> None:
         if sc.is_running():

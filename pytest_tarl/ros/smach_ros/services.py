@@ -37,7 +37,7 @@ class ServiceState(State):
     ) -> None:
         super().__init__(["succeeded", "aborted", "preempted", *outcomes], input_keys, output_keys)
         self._name, self._proxy = service_name, ServiceProxy(service_name, service_spec)
-        # an older form of the call: the callback is passed as `request`
+        # an older form of the call passes the callback as `request`
         if callable(request) and request_cb is None:
             request, request_cb = None, request
         self._request = service_spec._request_class() if request is None else request

@@ -9,7 +9,7 @@ from pytest_tarl.ros.actionlib.server import SimpleActionServer
 
 
 class ActionServerWrapper:
-    """Runs a container for each goal of an action; its outcome decides how the goal ends."""
+    """Runs a container for each goal of an action; the container's outcome decides how the goal ends."""
 
     def __init__(
         self,

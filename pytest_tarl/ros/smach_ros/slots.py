@@ -1,4 +1,4 @@
-"""Goals, requests, results and responses that are built from userdata, or by a function."""
+"""Goals, requests, results and responses built from userdata or by a function."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_tarl.ros.smach.userdata import Remapper
 
 
 def declare(state: State, callbacks: Iterable[Any], read: Iterable[str], written: Iterable[str]) -> None:
-    """Add the keys of slots, and those that callbacks declare, to the keys of a state."""
+    """Add the keys of slots, and those declared by callbacks, to a state."""
     state.register_input_keys(read)
     state.register_output_keys(written)
     for callback in callbacks:
@@ -39,7 +39,7 @@ def build(
 
 
 def view(state: State, ud: Any, callback: Any) -> Any:
-    """Return the userdata with the keys of a callback, or else of the state."""
+    """Return the userdata with the keys of a callback or, without declared keys, of the state."""
     read = getattr(callback, "_smach_input_keys", state.get_registered_input_keys())
     written = getattr(callback, "_smach_output_keys", state.get_registered_output_keys())
     return Remapper(ud, read, written)
@@ -54,7 +54,7 @@ def store(ud: Any, message: Any, key: str | None, slots: Sequence[str]) -> None:
 
 
 def seconds(duration: Any) -> float | None:
-    """Return a rospy Duration or a number of seconds as a float, or None for no limit."""
+    """Return a rospy Duration or a number of seconds as a float; None means no limit."""
     if duration is None:
         return None
     return float(duration.to_sec() if hasattr(duration, "to_sec") else duration)

@@ -36,7 +36,7 @@ Parts = tuple[float, ...]
 
 
 class TransformerROS:
-    """Looks up transforms and returns tuples: (x, y, z) and (x, y, z, w)."""
+    """Looks up transforms, as tuples (x, y, z) and (x, y, z, w)."""
 
     def __init__(self, interpolate: bool = True, cache_time: Any = None) -> None:  # noqa: ARG002
         self._buffer = Buffer(cache_time)
@@ -108,23 +108,23 @@ class TransformerROS:
         source_time: Any,  # noqa: ARG002
         fixed_frame: str,
     ) -> list[str]:
-        """Return the frames from the source frame via the fixed frame to the target frame."""
+        """Return the frames from the source frame, via the fixed frame, to the target frame."""
         first = self._buffer.chain(clean(fixed_frame), clean(source_frame))
         return first + self._buffer.chain(clean(target_frame), clean(fixed_frame))[1:]
 
     def clear(self) -> None:
-        """Discard all transforms that are not static."""
+        """Discard all transforms except static ones."""
         self._buffer.clear()
 
     def getTFPrefix(self) -> str:
-        """Return the prefix of frames, which tf2 always leaves empty."""
+        """Return the prefix of frames, which is always empty in tf2."""
         return ""
 
     def setUsingDedicatedThread(self, value: bool) -> None:
         """Do nothing: transforms always arrive while a node waits."""
 
     def getLatestCommonTime(self, source_frame: str, dest_frame: str) -> Any:
-        """Return the newest instant for which both frames are known."""
+        """Return the newest time at which both frames are known."""
         return self._buffer.get_latest_common_time(clean(source_frame), clean(dest_frame))
 
     def frameExists(self, frame_id: str) -> bool:
@@ -148,7 +148,7 @@ class TransformerROS:
         return transformations.compose(translation, rotation)
 
     def asMatrix(self, target_frame: str, hdr: Any) -> Any:
-        """Return the 4×4 matrix that moves points from a header's frame into another."""
+        """Return the 4×4 matrix that moves points from a header's frame to another."""
         move, turn = self.lookupTransform(target_frame, hdr.frame_id, hdr.stamp)
         return self.fromTranslationRotation(tuple(move), tuple(turn))
 
@@ -165,7 +165,7 @@ class TransformerROS:
         return do_transform_pose_stamped(ps, self._to(target_frame, ps))
 
     def transformPointCloud(self, target_frame: str, point_cloud: Any) -> Any:
-        """Return a PointCloud, the older type of clouds, in another frame."""
+        """Return a PointCloud (the older cloud type) in another frame."""
         header = point_cloud.header
         turned = self.asMatrix(target_frame, header)
         moved: Any = type(point_cloud)()

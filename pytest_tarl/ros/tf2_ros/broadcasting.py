@@ -31,13 +31,13 @@ class TransformBroadcaster:
         self._message = message_type("tf2_msgs/TFMessage" if node is None else "tf2_msgs/msg/TFMessage")
 
     def sendTransform(self, transform: Any) -> None:  # noqa: N802 (tf2_ros's name)
-        """Publish one transform or a list of them."""
+        """Publish one or more transforms."""
         several = list(transform) if isinstance(transform, list | tuple) else [transform]
         self._publisher.publish(self._message(transforms=several))
 
 
 class StaticTransformBroadcaster:
-    """Publishes constant transforms, also to later subscribers."""
+    """Publishes constant transforms, which later subscribers also get."""
 
     def __init__(self, node: Any = None, qos: Any = None) -> None:
         self._publisher = _publisher(node, "/tf_static", static=True)
@@ -45,7 +45,7 @@ class StaticTransformBroadcaster:
         self._sent: dict[str, Any] = {}
 
     def sendTransform(self, transform: Any) -> None:  # noqa: N802 (tf2_ros's name)
-        """Publish one transform or a list of them, together with all earlier ones."""
+        """Publish one or more transforms, together with all earlier ones."""
         for one in list(transform) if isinstance(transform, list | tuple) else [transform]:
             self._sent[one.child_frame_id] = one
         self._publisher.publish(self._message(transforms=list(self._sent.values())))

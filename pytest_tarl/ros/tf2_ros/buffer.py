@@ -1,4 +1,4 @@
-"""tf2_ros's Buffer: look-ups with a timeout, and transformation of stamped messages."""
+"""tf2_ros's Buffer: look-ups with a timeout, and transforming stamped messages."""
 
 # ruff: noqa: ARG002 (signatures are tf2_ros's)
 
@@ -45,7 +45,7 @@ class TransformRegistration:
 
 
 class BufferInterface:
-    """Methods of both kinds of buffers that use look-ups."""
+    """What both kinds of buffers build on look-ups."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -165,7 +165,7 @@ class Buffer(BufferInterface):
         return (not reason, reason) if return_debug_tuple else not reason
 
     def _wait(self, problem: Callable[[], str], timeout: Any) -> str:
-        """Wait until there is no problem, for at most `timeout`. Return the remaining problem."""
+        """Wait up to `timeout` until there is no problem; return the problem that remains."""
         clock = self.process.scheduler
         until = clock.time + (nanoseconds_of(timeout) if timeout is not None else 0)
         reason = problem()
@@ -175,12 +175,12 @@ class Buffer(BufferInterface):
         return reason
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Return the transform between two frames as soon as it is known (ROS 2)."""
+        """Return the transform between two frames once it is known (ROS 2)."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform(target_frame, source_frame, time)
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Return a future that is done when a look-up would succeed (ROS 2)."""
+        """Return a future that is done once a look-up would succeed (ROS 2)."""
         from pytest_tarl.ros.rclpy.task import Future
 
         future = Future()
@@ -199,12 +199,12 @@ class Buffer(BufferInterface):
         return "\n".join(f"{c}:\n  parent: '{e.parent}'" for c, e in sorted(self._tree.edges.items()))
 
     def clear(self) -> None:
-        """Discard all transforms that are not static."""
+        """Discard all transforms except static ones."""
         for child in [child for child, edge in self._tree.edges.items() if not edge.static]:
             del self._tree.edges[child]
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Any:
-        """Return the newest instant for which both frames are known."""
+        """Return the newest time at which both frames are known."""
         when = self._tree.look_up(target_frame, source_frame, 0)[1]
         return _stamp(when)
 
@@ -253,7 +253,7 @@ def nanoseconds_of(time: Any) -> int:
 
 
 def transform_stamped() -> Any:
-    """Make an empty geometry_msgs/TransformStamped of the generation that the node uses."""
+    """Create an empty geometry_msgs/TransformStamped of the node's ROS generation."""
     return import_module("geometry_msgs.msg").TransformStamped()
 
 

@@ -1,4 +1,4 @@
-"""tf2_ros's buffer server, which answers look-ups of other nodes, and its client."""
+"""tf2_ros's buffer server, which answers other nodes' look-ups, and its client."""
 
 # ruff: noqa: ARG002 (signatures are tf2_ros's)
 
@@ -16,7 +16,7 @@ _LOOK = nanoseconds(0.01)  # polling period while waiting for the server (ns)
 
 
 class BufferServers:
-    """The served buffers of an episode by server name."""
+    """The buffers served in an episode, by server name."""
 
     def __init__(self, _ros: Network) -> None:
         self.by_name: dict[str, Buffer] = {}
@@ -48,7 +48,7 @@ class BufferClient(BufferInterface):
         self._padding = nanoseconds_of(timeout_padding)
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until there is a server; return whether there is one in time. There is no limit for None or zero."""
+        """Wait for a server; return whether one appeared in time. None or zero waits without limit."""
         span = 0 if timeout is None else nanoseconds_of(timeout)
         return self._server(None if not span else self.process.scheduler.time + span) is not None
 

@@ -1,1 +1,1 @@
-"""Libraries of the ROS 1 command line tools, as nodes use them: rosgraph, rosnode, rostopic, and more."""
+"""The Python libraries of ROS 1 command line tools, for nodes that use them: rosgraph, rosnode, rostopic, and more."""

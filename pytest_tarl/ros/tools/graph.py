@@ -1,4 +1,4 @@
-"""The ROS graph as a master sees it. The simulated world does not appear as a node."""
+"""The ROS graph as seen by a master; the simulated world is not a node in it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Entry = tuple[str, list[str]]  # (topic or service, its nodes)
 
 
 def resolved(name: str) -> str:
-    """Resolve a name in the namespace of the running node."""
+    """Resolve a name in the running node's namespace."""
     return this_node("resolve_name").resolve(name)
 
 
@@ -25,7 +25,7 @@ def nodes() -> dict[str, Process]:
 
 
 def ends() -> tuple[list[Entry], list[Entry], list[Entry]]:
-    """Return the publishers, subscribers and services, each with the names of its nodes."""
+    """Return the publishers, subscribers and services, each with the names of the nodes."""
     process = current_process("rosgraph")
     publishers: list[Entry] = []
     subscribers: list[Entry] = []
@@ -38,7 +38,7 @@ def ends() -> tuple[list[Entry], list[Entry], list[Entry]]:
 
 
 def topic_types() -> dict[str, str]:
-    """Return the types of the topics that nodes publish on or subscribe to, by name."""
+    """Return the types of the topics that nodes publish on or subscribe to, by topic name."""
     found = {}
     for place in current_process("rosgraph").bus.topics():
         kinds = [publication.type for publication in place.publications]
@@ -65,7 +65,7 @@ def parameters() -> ParameterServer:
 
 
 def below(name: str, namespace: str | None) -> bool:
-    """Return whether a name lies in a namespace; always true for an empty namespace."""
+    """Return whether a name is in a namespace; an empty namespace contains all names."""
     inside = "/" + (namespace or "").strip("/")
     return inside == "/" or name == inside or name.startswith(inside + "/")
 

@@ -64,13 +64,13 @@ class Master:
         return [[name, kind] for name, kind in graph.topic_types().items()]
 
     def lookupNode(self, node_name: str) -> str:
-        """Return the address of a node. Raise MasterError for an unknown node."""
+        """Return a node's address. Raise MasterError for an unknown node."""
         if names.absolute(node_name) not in graph.nodes():
             raise MasterError(f"unknown node [{node_name}]")
         return "http://localhost:0/"
 
     def lookupService(self, service: str) -> str:
-        """Return the address of a service. Raise MasterError for a service that no node offers."""
+        """Return a service's address. Raise MasterError if no node offers it."""
         if self._full(service) not in graph.directory():
             raise MasterError("no provider")
         return "rosrpc://localhost:0"
@@ -80,7 +80,7 @@ class Master:
         return graph.parameters().get(self._full(key), _NOTHING) is not _NOTHING
 
     def getParam(self, key: str) -> Any:
-        """Return a parameter. Raise MasterError if the parameter is not set."""
+        """Return a parameter. Raise MasterError if it is not set."""
         value = graph.parameters().get(self._full(key), _NOTHING)
         if value is _NOTHING:
             raise MasterError(f"Parameter [{self._full(key)}] is not set")
@@ -91,12 +91,12 @@ class Master:
         graph.parameters().set(self._full(key), value)
 
     def deleteParam(self, key: str) -> None:
-        """Remove a parameter. Raise MasterError if the parameter is not set."""
+        """Remove a parameter. Raise MasterError if it is not set."""
         if not graph.parameters().delete(self._full(key)):
             raise MasterError(f"parameter [{self._full(key)}] is not set")
 
     def searchParam(self, key: str) -> str | None:
-        """Return the full name of the nearest parameter of that name, from the caller's namespace upwards."""
+        """Return the full name of the nearest parameter of this name, from the caller's namespace upwards."""
         path = [part for part in self.caller_id.split("/") if part]
         tried = (names.absolute("/".join([*path[:length], key])) for length in range(len(path), -1, -1))
         return next((name for name in tried if self.hasParam(name)), None)
@@ -113,7 +113,7 @@ class Master:
 
 
 class MasterProxy:
-    """The result of `rospy.get_master()`: answers queries with (code, status, value)."""
+    """What `rospy.get_master()` returns: answers queries with (code, status, value)."""
 
     target = Master("/rospy")
 

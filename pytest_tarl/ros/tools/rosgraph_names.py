@@ -1,4 +1,4 @@
-"""rosgraph.names: functions on the names of ROS 1."""
+"""rosgraph.names: functions for ROS 1 names."""
 
 # ruff: noqa: ARG001 (the signatures are rosgraph's)
 
@@ -23,7 +23,7 @@ REMAP = ":="
 
 
 def get_ros_namespace(env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None) -> str:
-    """Return the namespace of the command line (`__ns:=`), or else the variable `ROS_NAMESPACE`, or else `/`."""
+    """Return the namespace: `__ns:=` on the command line, or the variable `ROS_NAMESPACE`, or `/`."""
     for argument in argv or ():
         if argument.startswith("__ns:="):
             return make_global_ns(argument.removeprefix("__ns:="))
@@ -36,7 +36,7 @@ def make_caller_id(name: str) -> str:
 
 
 def make_global_ns(name: str) -> str:
-    """Return a name with slashes at its ends. Raise ValueError for a private name."""
+    """Return a name with a slash at both ends. Raise ValueError for a private name."""
     if is_private(name):
         raise ValueError(f"cannot turn [{name}] into a global name")
     return ("" if is_global(name) else SEP) + name + ("" if name.endswith(SEP) else SEP)
@@ -60,7 +60,7 @@ def namespace(name: str | None) -> str:
 
 
 def ns_join(ns: str, name: str) -> str:
-    """Join a namespace and a name; global and private names stay as they are."""
+    """Join a namespace and a name; global and private names stay unchanged."""
     if is_private(name) or is_global(name):
         return name
     if ns == PRIV_NAME:
@@ -69,29 +69,29 @@ def ns_join(ns: str, name: str) -> str:
 
 
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:
-    """Return the remappings `old:=new` of a command line, without special names such as `__name`."""
+    """Return the remappings `old:=new` on a command line, without special names such as `__name`."""
     pairs = [argument.split(REMAP, 1) for argument in argv if REMAP in argument]
     return {old.strip(): new.strip() for old, new in pairs if old.strip() and not old.startswith("_")}
 
 
 def is_legal_name(name: str | None) -> bool:
-    """Return whether a name can be that of a topic, service, node or parameter."""
+    """Return whether a topic, service, node or parameter can have this name."""
     return name is not None and (name == "" or is_legal_ros1(name))
 
 
 def is_legal_base_name(name: str | None) -> bool:
-    """Return whether a name can be the last part of a name."""
+    """Return whether a string can be the last part of a name."""
     return name is not None and bool(re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII))
 
 
 def canonicalize_name(name: str) -> str:
-    """Return a name without doubled and trailing slashes."""
+    """Return a name without doubled or trailing slashes."""
     parts = SEP.join(part for part in name.split(SEP) if part)
     return SEP + parts if is_global(name) else parts
 
 
 def resolve_name(name: str, namespace_: str, remappings: Mapping[str, str] | None = None) -> str:
-    """Return the global form of a name used in the node `namespace_`; remappings apply to the result."""
+    """Return the global form of a name used in node `namespace_`; remappings apply to the result."""
     if not name:
         return namespace(namespace_)
     name = canonicalize_name(name)
@@ -103,7 +103,7 @@ def resolve_name(name: str, namespace_: str, remappings: Mapping[str, str] | Non
 
 
 def script_resolve_name(script_name: str, name: str) -> str:
-    """Return the global form of a name on the command line of a script. Raise ValueError for a private name."""
+    """Return the global form of a name on a script's command line. Raise ValueError for a private name."""
     if is_private(name):
         raise ValueError("~name topics cannot be created on the command-line")
     return (

@@ -19,19 +19,19 @@ class ROSNodeIOException(ROSNodeException):
 
 
 def get_node_names(namespace: str | None = None) -> list[str]:
-    """Return the names of the nodes, optionally of one namespace only."""
+    """Return the names of all nodes, or of those in a namespace."""
     return sorted(name for name in graph.nodes() if graph.below(name, namespace))
 
 
 def rosnode_ping(
     node_name: str, max_count: int | None = None, verbose: bool = False, skip_cache: bool = False
 ) -> bool:
-    """Return whether a node runs."""
+    """Return whether a node is running."""
     return absolute(node_name) in graph.nodes()
 
 
 def kill_nodes(node_names: list[str]) -> tuple[list[str], list[str]]:
-    """Request nodes to end; return the names of the nodes that ran and of the nodes that did not."""
+    """Ask nodes to end; return the names of those that were running and of those that were not."""
     there = graph.nodes()
     killed = [name for name in node_names if absolute(name) in there]
     for name in killed:

@@ -21,7 +21,7 @@ Loaded = list[tuple[dict[str, Any], str]]
 
 
 class RosParamException(Exception):  # noqa: N818 (these names are rosparam's)
-    """A parameter or a file of parameters cannot be used."""
+    """A parameter or a parameter file cannot be used."""
 
 
 class RosParamIOException(RosParamException):
@@ -29,7 +29,7 @@ class RosParamIOException(RosParamException):
 
 
 def load_file(filename: str, default_namespace: str | None = None, verbose: bool = False) -> Loaded:
-    """Read a YAML file of parameters. Raise RosParamException if the file cannot be read."""
+    """Read a YAML file of parameters. Raise RosParamException if it cannot be read."""
     path = Path(filename)
     if not path.is_file():
         raise RosParamException(f"file [{filename}] does not exist")
@@ -59,7 +59,7 @@ def load_str(text: str, filename: str, default_namespace: str | None = None, ver
 
 
 def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
-    """Set a dictionary of parameters below a namespace. Raise RosParamException if any other value is set in `/`."""
+    """Set a dictionary of parameters below a namespace. Raise RosParamException for other values in `/`."""
     if absolute(ns) == "/" and not isinstance(values, dict):
         raise RosParamException("global / can only be set to a dictionary")
     if verbose:
@@ -69,7 +69,7 @@ def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
 
 
 def get_param(param_name: str) -> Any:
-    """Return a parameter. Raise RosParamException if the parameter is not set."""
+    """Return a parameter. Raise RosParamException if it is not set."""
     value = graph.parameters().get(graph.resolved(param_name), _NOTHING)
     if value is _NOTHING:
         raise RosParamException(f"Parameter [{param_name}] is not set")
@@ -82,7 +82,7 @@ def set_param(param: str, value: str, verbose: bool = False) -> None:
 
 
 def delete_param(param: str, verbose: bool = False) -> None:
-    """Remove a parameter. Raise RosParamException if the parameter is not set."""
+    """Remove a parameter. Raise RosParamException if it is not set."""
     if not graph.parameters().delete(graph.resolved(param)):
         raise RosParamException(f"Parameter [{param}] is not set")
     if verbose:

@@ -22,7 +22,7 @@ class ROSServiceIOException(ROSServiceException):
 
 
 def get_service_list(node: str | None = None, namespace: str | None = None) -> list[str]:
-    """Return the names of the services, optionally of one node or namespace only."""
+    """Return the names of all services, or of those of a node or in a namespace."""
     entries = [(name, nodes) for name, nodes in graph.ends()[2] if graph.below(name, namespace)]
     return sorted(name for name, nodes in entries if node is None or graph.resolved(node) in nodes)
 
@@ -34,7 +34,7 @@ def get_service_type(service_name: str) -> str | None:
 
 
 def get_service_class_by_name(service_name: str) -> Any:
-    """Return the class of a service. Raise ROSServiceException if the service is unknown."""
+    """Return a service's class. Raise ROSServiceException if the service is unknown."""
     found = graph.services().get(graph.resolved(service_name))
     if found is None:
         raise ROSServiceException(f"Service [{service_name}] is not available.")
@@ -47,7 +47,7 @@ def get_service_node(service_name: str) -> str | None:
 
 
 def call_service(service_name: str, service_args: Any, service_class: Any = None) -> tuple[Any, Any]:
-    """Call a service with a list of values or a dictionary of fields; return the request and the response."""
+    """Call a service with a list of values or a dictionary of fields; return request and response."""
     made = service_class or get_service_class_by_name(service_name)
     if isinstance(service_args, list) and len(service_args) == 1 and isinstance(service_args[0], dict):
         service_args = service_args[0]

@@ -27,7 +27,7 @@ class ROSTopicIOException(ROSTopicException):
 
 
 def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str | None, Evaluate]:
-    """Return type, topic name, and a function that picks the field if `topic` names one; None if unknown."""
+    """Return type, name, and a function that reads the field if `topic` includes one; None if unknown."""
     process = current_process("rostopic.get_topic_type")
     while True:
         found = _known(topic)
@@ -37,7 +37,7 @@ def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str 
 
 
 def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None, Evaluate]:
-    """Return message class, topic name, and the function of `get_topic_type`.
+    """Return message class, topic name, and the function from `get_topic_type`.
 
     Raise ROSTopicException if the type is unknown.
     """

@@ -1,4 +1,4 @@
-"""`rostopic.ROSTopicHz`: measures the rate of a topic in virtual time."""
+"""`rostopic.ROSTopicHz`: measures a topic's rate in virtual time."""
 
 # ruff: noqa: ARG002 (signatures are rostopic's)
 
@@ -14,11 +14,11 @@ from pytest_tarl.ros.rospy.timing import get_time
 
 Rate = tuple[
     float, float, float, float, int
-]  # rate (Hz); shortest period, longest period and standard deviation (s); number of messages
+]  # rate (Hz); shortest and longest period and their standard deviation (s); number of messages
 
 
 class ROSTopicHz:
-    """Takes messages by `callback_hz` and returns rates by `get_hz`; keeps the last `window_size` periods."""
+    """Receives messages in `callback_hz` and returns rates from `get_hz`, over the last `window_size` periods."""
 
     def __init__(self, window_size: int, filter_expr: Any = None, use_wtime: bool = False) -> None:
         self.window_size = window_size if window_size > 0 else 50_000
@@ -26,7 +26,7 @@ class ROSTopicHz:
         self._times: dict[str | None, deque[float]] = {}
 
     def callback_hz(self, m: Any, topic: str | None = None) -> None:
-        """Take a message of a topic."""
+        """Receive a message on a topic."""
         if self.filter_expr is None or self.filter_expr(m):
             kept = self._times.setdefault(topic, deque(maxlen=self.window_size + 1))
             kept.append(get_time())

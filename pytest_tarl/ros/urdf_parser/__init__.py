@@ -1,1 +1,1 @@
-"""urdf_parser_py: read robot descriptions (URDF). An installed urdf_parser_py takes precedence."""
+"""urdf_parser_py: read robot descriptions (URDF). If the real urdf_parser_py is installed, it takes precedence."""

@@ -1,6 +1,6 @@
 """The elements of a robot description, and the error for a malformed element.
 
-Lengths are in metres, angles in radians, masses in kilograms. An element that the description lacks is None.
+Lengths are in metres, angles in radians, masses in kilograms. Elements missing from the description are None.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 
 class ParseError(Exception):
-    """Raised if an element lacks an attribute or has a malformed one."""
+    """An element lacks an attribute or has a malformed one."""
 
 
 @dataclass
@@ -47,7 +47,7 @@ class Texture:
 
 @dataclass
 class Material:
-    """A material of a visual, or a reference to one by its name."""
+    """The material of a visual, or a reference to one by name."""
 
     name: str | None = None
     color: Color | None = None
@@ -56,7 +56,7 @@ class Material:
 
 @dataclass
 class Box:
-    """A box with the lengths of its edges."""
+    """A box, given by the lengths of its edges."""
 
     size: list[float] | None = None
 
@@ -78,7 +78,7 @@ class Sphere:
 
 @dataclass
 class Mesh:
-    """A mesh in a file, which is not read."""
+    """A mesh file, which is not read."""
 
     filename: str | None = None
     scale: list[float] | None = None
@@ -134,7 +134,7 @@ class Inertial:
 
 @dataclass
 class JointLimit:
-    """Maximum effort and velocity of a joint, and the bounds of its position."""
+    """A joint's maximum effort and velocity, and its range of positions."""
 
     effort: float | None = None
     velocity: float | None = None
@@ -152,7 +152,7 @@ class JointDynamics:
 
 @dataclass
 class JointMimic:
-    """The joint that this joint follows: multiplier * position + offset."""
+    """The joint that this one follows: multiplier * position + offset."""
 
     joint: str | None = None
     multiplier: float | None = None
@@ -161,7 +161,7 @@ class JointMimic:
 
 @dataclass
 class JointCalibration:
-    """Positions of the edges of a reference switch."""
+    """The positions at which a reference switch changes."""
 
     rising: float = 0
     falling: float = 0
@@ -179,7 +179,7 @@ class SafetyController:
 
 @dataclass
 class Joint:
-    """A joint between two links, which it names."""
+    """A joint between two links, given by name."""
 
     name: str | None = None
     parent: str | None = None

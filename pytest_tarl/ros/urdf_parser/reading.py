@@ -152,7 +152,7 @@ def _needed(element: Element, tag: str) -> Element:
 
 
 def attribute(element: Element, name: str) -> str:
-    """Return an attribute. Raise ParseError if the attribute is missing."""
+    """Return an attribute. Raise ParseError if it is missing."""
     value = element.get(name)
     if value is None:
         raise _wrong(element, f"Required attribute not set in XML: {name}")
@@ -160,7 +160,7 @@ def attribute(element: Element, name: str) -> str:
 
 
 def _number(element: Element, name: str, default: float | None = None) -> float:
-    """Return an attribute as a number, or the default if it is missing. Raise ParseError if there is no default."""
+    """Return an attribute as a number, or the default. Raise ParseError if it is missing without a default."""
     if default is not None and name not in element.attrib:
         return default
     return next(_floats(element, name, attribute(element, name)))

@@ -57,7 +57,7 @@ __all__ = [
 
 @dataclass
 class Robot:
-    """A robot: links, and the joints that connect them into a tree."""
+    """A robot: links, connected by joints into a tree."""
 
     name: str | None = None
     version: str = "1.0"
@@ -94,7 +94,7 @@ class Robot:
     def get_chain(
         self, root: str, tip: str, joints: bool = True, links: bool = True, fixed: bool = True
     ) -> list[str]:
-        """Return the names of the links and joints from one link down to another. Raise KeyError if there is none."""
+        """Return the names of the links and joints from one link down to another. Raise KeyError if there are none."""
         chain = [tip] if links else []
         link = tip
         while link != root:
@@ -121,7 +121,7 @@ class Robot:
 
     @classmethod
     def from_xml_file(cls, file_path: str) -> Robot:
-        """Read a robot from a file. Raise what `from_xml_string` raises, and OSError."""
+        """Read a robot from a file. Raise OSError, or what `from_xml_string` raises."""
         return cls.from_xml_string(Path(file_path).read_bytes())
 
     load_xml_string = from_xml_string

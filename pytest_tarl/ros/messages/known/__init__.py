@@ -1,4 +1,4 @@
-"""Definitions of widely used message, service and action types that `rosbags` does not ship."""
+"""Definitions of widely used message, service and action types that `rosbags` does not contain."""
 
 from __future__ import annotations
 

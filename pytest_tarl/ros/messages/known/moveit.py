@@ -1,4 +1,4 @@
-"""Types of MoveIt and of the packages that they refer to, in the form of `msgs`, `srvs` and `actions`."""
+"""Types of MoveIt and of the packages that they use, in the form of `msgs`, `srvs` and `actions`."""
 
 _ERROR_CODES = """
 == moveit_msgs/MoveItErrorCodes

@@ -1,4 +1,4 @@
-"""rclpy's actions: goals, feedback, results and cancelling between the nodes of an episode."""
+"""rclpy's actions: goals, feedback, results and cancellation between an episode's nodes."""
 
 from __future__ import annotations
 

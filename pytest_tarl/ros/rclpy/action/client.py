@@ -15,7 +15,7 @@ from pytest_tarl.ros.scheduler import current_task
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
-_LOOK = nanoseconds(0.25)  # rclpy's polling period while waiting for the server
+_LOOK = nanoseconds(0.25)  # rclpy's polling period when waiting for the server
 
 
 class ActionClient:
@@ -38,7 +38,7 @@ class ActionClient:
         return self._name in self._directory.servers
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Wait until the action has a server; return whether it has one in time."""
+        """Wait for a server; return whether one appeared in time."""
         process = self._node.process
         clock = process.scheduler
         until = None if timeout_sec is None else clock.time + nanoseconds(timeout_sec)
@@ -71,7 +71,7 @@ class ActionClient:
         return self.block_on(self.result_of(handle))
 
     def result_of(self, handle: ClientGoalHandle) -> Future:
-        """Request the result of a goal from the server."""
+        """Request a goal's result from the server."""
         return self._ask("result_wanted", handle)
 
     def cancel(self, handle: ClientGoalHandle) -> Future:

@@ -1,4 +1,4 @@
-"""Goal handles of server and client, and the directory that connects them."""
+"""Goal handles of server and client, and the directory that connects both."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.task import Future
 
 UNKNOWN, ACCEPTED, EXECUTING, CANCELING, SUCCEEDED, CANCELED, ABORTED = range(7)  # action_msgs/GoalStatus
-_NEXT = {  # valid successors of a state
+_NEXT = {  # state → states that may follow
     ACCEPTED: (EXECUTING, CANCELING),
     EXECUTING: (CANCELING, SUCCEEDED, ABORTED),
     CANCELING: (SUCCEEDED, CANCELED, ABORTED),
@@ -47,7 +47,7 @@ class ActionDirectory:
         self._goals = 0
 
     def new_goal_id(self) -> Any:
-        """Return a new unique_identifier_msgs/UUID. UUIDs are numbered consecutively to make runs reproducible."""
+        """Return a new unique_identifier_msgs/UUID. UUIDs are consecutive numbers, so that runs can be reproduced."""
         self._goals += 1
         made: Any = find_class("ros2", "unique_identifier_msgs", "UUID")
         return made(uuid=list(self._goals.to_bytes(16, "big")))
@@ -121,7 +121,7 @@ class ServerGoalHandle:
 
 
 class ClientGoalHandle:
-    """A goal that a client sent and the server answered."""
+    """A goal that a client sent, after the server's answer."""
 
     def __init__(self, client: ActionClient, goal_id: Any, *, accepted: bool, stamp: Any) -> None:
         self._client = client
@@ -146,5 +146,5 @@ class ClientGoalHandle:
         return self._client.cancel(self)
 
     def cancel_goal(self) -> Any:
-        """Ask the server to cancel the goal and wait for its answer; another task must spin."""
+        """Ask the server to cancel the goal, and wait for its answer; another task must spin."""
         return self._client.block_on(self.cancel_goal_async())

@@ -52,7 +52,7 @@ def default_cancel_callback(goal_handle: Any) -> CancelResponse:
 
 
 class ActionServer:
-    """Executes goals with `execute_callback(goal_handle)`, which returns the result."""
+    """Executes goals by `execute_callback(goal_handle)`, which returns the result."""
 
     def __init__(
         self,
@@ -81,7 +81,7 @@ class ActionServer:
         self.register_cancel_callback(cancel_callback)
 
     def register_execute_callback(self, execute_callback: Any) -> None:
-        """Replace the execute callback. Raise TypeError if the new callback is not callable."""
+        """Replace the execute callback. Raise TypeError if the new one is not callable."""
         if not callable(execute_callback):
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback: Callable[[ServerGoalHandle], Any] = execute_callback

@@ -1,4 +1,4 @@
-"""Managed entities of a lifecycle node, such as publishers, which work only while it is active."""
+"""Managed entities of a lifecycle node, such as publishers, which work only while the node is active."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SUCCESS = TransitionCallbackReturn.SUCCESS
 
 
 class ManagedEntity:
-    """Takes part in every transition; each callback returns SUCCESS by default."""
+    """An entity that takes part in every transition; callbacks return SUCCESS by default."""
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002 (for those who derive)
         """Return SUCCESS."""
@@ -45,7 +45,7 @@ class SimpleManagedEntity(ManagedEntity):
 
     @staticmethod
     def when_enabled(wrapped: Any = None, *, when_not_enabled: Callable[[], Any] | None = None) -> Any:
-        """Decorate a method so that it does nothing, or calls another function, while disabled."""
+        """Make a method do nothing, or call another function, while its entity is disabled."""
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)
@@ -61,7 +61,7 @@ class SimpleManagedEntity(ManagedEntity):
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher):
-    """Publishes while its node is active; drops messages otherwise."""
+    """Publishes while its node is active, and otherwise drops messages."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         SimpleManagedEntity.__init__(self)

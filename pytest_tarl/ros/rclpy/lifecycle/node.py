@@ -32,7 +32,7 @@ _SERVICES = {
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """Mixin of LifecycleNode: states and transitions. By default, callbacks run those of the managed entities."""
+    """Mixin of LifecycleNode: states and transitions. By default, callbacks call those of the managed entities."""
 
     def __init__(self, *, enable_communication_interface: bool = True, **_: Any) -> None:
         self._state = UNCONFIGURED
@@ -58,14 +58,14 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change(4)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Trigger the transition, which calls `on_shutdown`. Raise RCLError in a state without that transition."""
+        """Trigger the transition, which calls `on_shutdown`. Raise RCLError if the state does not allow it."""
         for transition in TRANSITIONS:
             if transition.label == "shutdown" and transition.start == self._state:
                 return self._change(transition.number)
         raise RCLError("Shutdown transtion not possible")  # rclpy's own spelling
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Add an entity that takes part in all transitions. Raise TypeError if the entity is no ManagedEntity."""
+        """Add an entity that takes part in all transitions. Raise TypeError if it is not a ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.append(entity)

@@ -14,7 +14,7 @@ class LifecycleState(NamedTuple):
 
 
 class TransitionCallbackReturn(Enum):
-    """The result of a transition's callback."""
+    """The result of a transition callback."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -22,7 +22,7 @@ class TransitionCallbackReturn(Enum):
 
 
 class Transition(NamedTuple):
-    """One transition: its request, its start, the intermediate state, and the goal for each result."""
+    """A transition: its request, its start state, the intermediate state, and the next state for each result."""
 
     number: int
     label: str
