@@ -1,7 +1,7 @@
-"""Fetch the fonts, Mermaid and the search shim that the site contains, so that reading it needs no network.
+"""Fetch the site's fonts, Mermaid and search shim, so that reading the site needs no network.
 
-npm fetches each package once; its digest is checked, and only the files named here are stored. A later build finds
-them in `build/assets` and needs no network.
+npm fetches each package once; its digest is checked, and only the files named here are stored in `build/assets`. Later
+builds find them there and need no network.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class AssetsError(Exception):
 
 
 class Package(NamedTuple):
-    """A pinned npm package: the sha512 digest of its tarball, and the files to store (path in tarball → new name)."""
+    """A pinned npm package: the tarball's sha512 digest, and the files to store (path in the tarball → new name)."""
 
     name: str
     version: str
@@ -78,7 +78,7 @@ TESTED_WITH = Package(
 
 
 def fetch(package: Package) -> None:
-    """Store the files of a package in `build/assets` unless they are already there. Raise AssetsError on failure."""
+    """Store a package's files in `build/assets`, unless they are already there. Raise AssetsError on failure."""
     if package.stamp.exists():
         return
     npm = shutil.which("npm")
@@ -102,7 +102,7 @@ def fetch(package: Package) -> None:
 
 
 def unpack(package: Package, tarball: bytes) -> None:
-    """Write the files to store from a tarball. Raise AssetsError if the digest of the tarball is not the pinned one."""
+    """Write the files to store from a tarball. Raise AssetsError if its digest is not the pinned one."""
     digest = base64.b64encode(hashlib.sha512(tarball).digest()).decode()
     if digest != package.sha512:
         raise AssetsError(

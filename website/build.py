@@ -2,9 +2,8 @@
 
     python -m website.build [--quick]
 
-The script copies the pages to build/pages, and zensical builds build/site from them.
-Warnings are errors. Nothing is fetched once `python -m website.build --fetch` has stored
-fonts and scripts in build/assets.
+The script copies the pages to build/pages, from which zensical builds build/site. Warnings are errors. Once `python -m
+website.build --fetch` has stored fonts and scripts in build/assets, nothing is fetched.
 """
 
 from __future__ import annotations
@@ -26,9 +25,9 @@ BUILD = HERE.parent / "build"
 
 
 def settings(address: str, quick: bool) -> str:
-    """Return the settings of zensical: website/zensical.toml plus the folders, the address and the menu of versions."""
+    """Return zensical's settings: website/zensical.toml plus the folders, the address and the menu of versions."""
     text = (HERE / "zensical.toml").read_text("utf-8")
-    tomllib.loads(text)  # parsed only to report a syntax error with its line
+    tomllib.loads(text)  # parsed only to report syntax errors with their line
     known = [
         'docs_dir = "pages"',
         'site_dir = "site"',
@@ -38,7 +37,7 @@ def settings(address: str, quick: bool) -> str:
         text = "".join(line for line in text.splitlines(keepends=True) if '"gallery/index.md"' not in line)
     text = text.replace("[project]\n", "[project]\n" + "\n".join(known) + "\n", 1)
     text = text.replace("[project.theme]\n", '[project.theme]\ncustom_dir = "overrides"\n', 1)
-    # A site with an address is published beside sites of other versions, and has a menu to switch between versions.
+    # a site with an address is published beside other versions, and has a menu to switch between them
     if address:
         text = text.replace("[project.extra]\n", '[project.extra]\nversion = { provider = "mike" }\n', 1)
     return text.replace('paths = ["."]', 'paths = [".."]', 1)
@@ -63,7 +62,7 @@ def stage(build: Path, quick: bool) -> None:
 def build(target: Path, *, quick: bool = False, address: str = "") -> Path:
     """Build the site below `target` and return its directory; `quick` omits the gallery.
 
-    Raise CalledProcessError on a warning, AssetsError if a package cannot be fetched.
+    Raise CalledProcessError on a warning, and AssetsError if a package cannot be fetched.
     """
     for package in assets.SHIPPED:
         assets.fetch(package)

@@ -1,4 +1,4 @@
-"""Write the files of the example in docs/howto/fleet-logs.md: logs, a recording, and the data set of a fleet.
+"""Write the files for the example in docs/howto/fleet-logs.md: logs, a recording, and a fleet's data set.
 
     python -m website.fleet_example FOLDER && cd FOLDER && tarl fleet fleet --by site --since 2026-08-01
 
@@ -16,9 +16,9 @@ from pytest_tarl.commands.cli import main
 from tests.plugin.monitoring.missions import fixture, log, walks
 
 BEGAN = datetime(2026, 9, 7, 8, 26, tzinfo=timezone.utc).timestamp()
-APART = 7.5 * 3600  # time between two missions of a robot (s)
+APART = 7.5 * 3600  # seconds between two missions of a robot
 ROBOTS, DRIFTED = 32, (4, 9)
-SLIGHT = 0.4  # size of the drift at the second site; that of the two drifting robots is 1
+SLIGHT = 0.4  # size of the drift at the second site, relative to that of the two drifting robots
 
 
 def write(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Build the gallery: run examples (record, compare, search a repair) and collect their report pages.
+"""Build the gallery: run examples (record, compare, search for a repair) and collect their report pages.
 
 A run takes minutes, so its pages are kept in build/gallery until the example or the packages change.
 """
@@ -21,7 +21,7 @@ KEPT = ROOT / "build" / "gallery"
 
 
 class Shown(NamedTuple):
-    """A test of an example, with a description; its report pages are in the gallery."""
+    """A test of an example, with a description, whose report pages are in the gallery."""
 
     example: str
     test: str
@@ -29,7 +29,7 @@ class Shown(NamedTuple):
 
     @property
     def address(self) -> str:
-        """Return the prefix of the names of its pages."""
+        """Return the prefix of its pages' names."""
         return f"{self.example}-{self.test.rpartition('::')[2].replace('_', '-')}"
 
 
@@ -41,7 +41,7 @@ SHOWN = (
 
 
 def digest(example: str) -> str:
-    """Return a digest of all files that affect the pages of an example."""
+    """Return a digest of all files that affect an example's pages."""
     folders = (ROOT / "examples" / example, ROOT / "pytest_tarl", ROOT / "tarl_lint")
     files = sorted(path for folder in folders for path in folder.rglob("*") if _source(path))
     found = hashlib.sha256()
@@ -60,7 +60,7 @@ def _source(path: Path) -> bool:
 
 
 def reports(shown: Shown) -> list[Path]:
-    """Return the report pages of an example; run it if none are kept. Raise ValueError if the run writes no page."""
+    """Return an example's report pages; run it if none are kept. Raise ValueError if the run writes no page."""
     folder = KEPT / f"{shown.address}-{digest(shown.example)}"
     if not folder.is_dir():
         with tempfile.TemporaryDirectory() as parent:
@@ -88,7 +88,7 @@ def _made(shown: Shown, work: Path, folder: Path) -> None:
 
 
 def write(staged: Path) -> None:
-    """Write the page that lists the reports, and copy the reports beside it."""
+    """Write the page that lists the reports, and copy the reports next to it."""
     folder = staged / "gallery"
     folder.mkdir()
     lines = [

@@ -37,7 +37,7 @@ class Page(HTMLParser):
 
 
 def broken(site: Path) -> list[str]:
-    """Return a sentence for each broken link and for each address loaded from the network, in the order of pages."""
+    """Return a sentence for each broken link and each address loaded from the network, in the order of pages."""
     reports = {*site.glob("gallery/*.html")} - {site / "gallery" / "index.html"}  # reports are self-contained
     files = sorted({*site.rglob("*.html")} - reports)
     pages = {path: Page(path.read_text("utf-8")) for path in files}

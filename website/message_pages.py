@@ -1,4 +1,4 @@
-"""Write a page for each message of docs/messages.md, and a page that lists them."""
+"""Write a page for each message in docs/messages.md, and a page that lists them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LISTED = "messages.md"
 
 
 class Message(NamedTuple):
-    """A message of a program: its group of docs/messages.md, its words, and the text that explains it."""
+    """A program's message: its group in docs/messages.md, its words, and the text that explains it."""
 
     group: str
     words: str
@@ -20,22 +20,22 @@ class Message(NamedTuple):
 
     @property
     def slug(self) -> str:
-        """Return the name of its page: the words in lower case, joined by hyphens."""
+        """Return the name of the message's page: its words in lower case, joined by hyphens."""
         return slug(self.words)
 
 
 def slug(words: str) -> str:
-    """Return words as a part of a URL: in lower case, joined by hyphens."""
+    """Return words as part of a URL: in lower case, joined by hyphens."""
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")
 
 
 def anchor(words: str) -> str:
-    """Return GitHub's anchor of a heading; the links in docs/ use these anchors."""
+    """Return GitHub's anchor for a heading, as used by the links in docs/."""
     return re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
 
 
 def split(page: str) -> tuple[str, list[Message]]:
-    """Return the introduction of docs/messages.md, and its messages; each text ends with the text of its group."""
+    """Return the introduction of docs/messages.md and its messages; each text ends with that of its group."""
     ends = [*SECTION.finditer(page)]
     introduction = page[: ends[0].start()].strip()
     messages, group, lead = [], "", ""
@@ -71,7 +71,7 @@ def write(staged: Path) -> list[Message]:
 
 
 def _relink(page: Path, addresses: Mapping[str, str]) -> None:
-    """Replace links to headings of messages.md by links to pages. Raise ValueError for an unknown heading."""
+    """Replace links to headings in messages.md by links to pages. Raise ValueError for an unknown heading."""
 
     def moved(match: re.Match[str]) -> str:
         if match[2] not in addresses:

@@ -1,13 +1,13 @@
-"""Options of pytest that block plugins of other projects; importing these plugins takes a second or more.
+"""pytest options that block other projects' plugins, whose import takes a second or more.
 
-The development extra installs these plugins; a user has few of them.
+The development extra installs these plugins; users have few of them.
 """
 
 from __future__ import annotations
 
 import importlib.metadata
 
-# `-p NAME` after these options loads a plugin again.
+# `-p NAME` after these options loads a plugin again
 BLOCKED = " ".join(
     f"-p no:{name}"
     for name in sorted({entry.name for entry in importlib.metadata.entry_points(group="pytest11")})

@@ -1,9 +1,9 @@
-"""Run the commands that a page shows, and compare their output with the page.
+"""Run the commands on a page, and compare their output with the page.
 
-A block with a title is a file. A `console` block holds commands, each after `$ `, and their output. All commands run in
-one shell, from top to bottom, in an empty folder. A line `...` in the output stands for omitted lines. Durations and
-digests are not compared, because they depend on the machine. A block after `<!-- nightly -->` runs only with
-TARL_SLOW=1, because it installs packages.
+A block with a title is a file. A `console` block has commands, each after `$ `, and their output. All commands run in
+one shell, from top to bottom, starting in an empty folder. A line `...` in the output stands for omitted lines.
+Durations and digests are not compared, because they depend on the machine. A block after `<!-- nightly -->` installs
+packages, and runs only with TARL_SLOW=1.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ LIMIT = 300  # time limit of a command in s
 
 
 class Command(NamedTuple):
-    """A command of a page and the output that the page shows below it."""
+    """A command on a page, with the output shown below it."""
 
     line: str
     output: str
 
 
 class Block(NamedTuple):
-    """A block of a page: a file or a list of commands. `start` and `end` are the offsets of its text in the page."""
+    """A block of a page: a file or a list of commands. `start` and `end` are the offsets of its text."""
 
     start: int
     end: int
@@ -48,7 +48,7 @@ class Block(NamedTuple):
     nightly: bool
 
     def commands(self) -> list[Command]:
-        """Return the commands of a console block."""
+        """Return the commands in a console block."""
         parts = re.split(r"^\$ (.*)\n", self.text, flags=re.MULTILINE)[1:]
         return [Command(line, output) for line, output in zip(parts[::2], parts[1::2], strict=True)]
 
@@ -63,13 +63,13 @@ def blocks(page: str) -> list[Block]:
 
 
 def same(shown: str, printed: str) -> bool:
-    """Return whether the output in a page matches the printed output, except for varying parts and omitted lines."""
+    """Return whether the output on a page matches the printed one, except for varying parts and omitted lines."""
     parts = [re.escape(VARIES.sub("~", part)) for part in LEFT_OUT.split(shown)]
     return re.fullmatch("(?:.*\n)*?".join(parts), VARIES.sub("~", printed)) is not None
 
 
 def shortened(shown: str, printed: str) -> str:
-    """Shorten the printed output to its first and last lines, as many as the page shows."""
+    """Shorten the printed output to as many first and last lines as the page shows."""
     head, *rest = LEFT_OUT.split(shown, maxsplit=1)
     lines = printed.splitlines(keepends=True)
     if not rest:
@@ -79,7 +79,7 @@ def shortened(shown: str, printed: str) -> str:
 
 
 class Shell(AbstractContextManager["Shell"]):
-    """A shell that runs commands one after the other in a folder, like the shell of a reader."""
+    """A shell that runs commands one after another in a folder, like a reader's shell."""
 
     def __init__(self, folder: Path) -> None:
         self._shell = subprocess.Popen(
@@ -98,7 +98,7 @@ class Shell(AbstractContextManager["Shell"]):
         self._shell.communicate()
 
     def run(self, line: str) -> str:
-        """Run a command and return its output. Raise EOFError if the command ends the shell."""
+        """Run a command and return its output. Raise EOFError if it ends the shell."""
         assert self._shell.stdin is not None
         assert self._shell.stdout is not None
         self._shell.stdin.write(
@@ -123,7 +123,7 @@ def _environment(folder: Path) -> dict[str, str]:
         name: value
         for name, value in os.environ.items()
         if not name.startswith(("PYTEST", "GIT_", "GITHUB_", "COV_", "TARL_"))
-        and name not in ("CI", "BUILD_NUMBER")  # with these set, pytest does not shorten lines
+        and name not in ("CI", "BUILD_NUMBER")  # with these variables, pytest does not shorten lines
     }
     who = {f"GIT_{role}_{what}": value for role in ("AUTHOR", "COMMITTER") for what, value in _WHO.items()}
     return {
@@ -145,7 +145,7 @@ _WHO = {"NAME": "Reader", "EMAIL": "reader@example.org", "DATE": "2026-01-05T09:
 
 
 class Ran(NamedTuple):
-    """A command that was run: its block, the command as in the page, its output, and its duration in s."""
+    """A command that was run: its block, the command as on the page, its output, and its duration in s."""
 
     block: Block
     command: Command
@@ -154,7 +154,7 @@ class Ran(NamedTuple):
 
 
 def run(page: str, folder: Path, *, nightly: bool = False) -> Iterator[Ran]:
-    """Write the files of a page and run its commands in an empty folder, in order."""
+    """Write a page's files and run its commands in an empty folder, in order."""
     with Shell(folder) as shell:
         for block in blocks(page):
             if block.file is not None:
@@ -167,7 +167,7 @@ def run(page: str, folder: Path, *, nightly: bool = False) -> Iterator[Ran]:
 
 
 def renewed(page: str, ran: list[Ran]) -> str:
-    """Return a page in which each output that differs is replaced by the printed one."""
+    """Return a page with each differing output replaced by the printed one."""
     texts: dict[Block, str] = {}
     for one in ran:
         output = one.command.output

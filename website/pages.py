@@ -1,4 +1,4 @@
-"""Copy the pages of the repository to the site, and adapt their links."""
+"""Copy the repository's pages to the site, and adapt their links."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).parent.parent
 TOP = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "GOVERNANCE.md", "CODE_OF_CONDUCT.md")
-ONLY = Path(__file__).parent / "site_pages"  # pages that exist only in the site, relative to its root
+ONLY = Path(__file__).parent / "site_pages"  # pages that exist only on the site, relative to its root
 GENERATED = {f"docs/reference/{name}.md" for name in ("options", "commands", "settings", "schemas", "api")}
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 
 
 def address(path: PurePosixPath) -> PurePosixPath:
-    """Return the path in the site of a file of the repository."""
+    """Return the path on the site of a file in the repository."""
     parts = path.parts
     if parts[0] == "docs":
         path = PurePosixPath(*parts[1:])
@@ -29,7 +29,7 @@ def address(path: PurePosixPath) -> PurePosixPath:
 
 @cache
 def written() -> dict[PurePosixPath, Path]:
-    """Return every page, picture and linked file that is not generated: its path relative to the repository → file."""
+    """Return every page, picture and linked file that is not generated: path in the repository → file."""
     files = [*(ROOT / "docs").rglob("*"), *(ROOT / name for name in TOP), *(ROOT / "examples").rglob("*.md")]
     linked = [*(ROOT / "examples").rglob("*.py"), *schemas()]
     places = {PurePosixPath(path.relative_to(ROOT).as_posix()): path for path in sorted({*files, *linked})}
@@ -63,7 +63,7 @@ def relinked(text: str, page: PurePosixPath) -> str:
 
 
 def _relative(target: str, anchor: str, page: PurePosixPath) -> str:
-    """Convert a link between files of the repository to one between their paths in the site."""
+    """Convert a link between files in the repository to one between their paths on the site."""
     place = PurePosixPath(os.path.normpath(page.parent / target))
     if (ROOT / place).is_dir():
         place /= "README.md"

@@ -1,7 +1,7 @@
-"""Set the addresses of the project in the metadata of a wheel.
+"""Set the project's addresses in a wheel's metadata.
 
-A release sets SITE_URL, the address of the documentation, and REPOSITORY_URL. A wheel built without them contains
-no address, so that a fork does not send its users to the pages of this project.
+A release sets SITE_URL, the address of the documentation, and REPOSITORY_URL. A wheel built without them has no
+addresses, so that a fork does not send its users to this project's pages.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 
 class ProjectUrls(MetadataHookInterface):
-    """Add the addresses that the environment variables contain."""
+    """Add the addresses given by environment variables."""
 
     def update(self, metadata: dict[str, Any]) -> None:
-        """Set `urls` of the project. Raise ValueError for an invalid address."""
+        """Set the project's `urls`. Raise ValueError for an invalid address."""
         metadata["urls"] = urls(os.environ)
 
 
 def urls(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the project's addresses by label. Raise ValueError unless every address begins with https://."""
+    """Return the project's addresses by label. Raise ValueError unless all of them begin with https://."""
     found: dict[str, str] = {}
     site, repository = (_address(name, environment) for name in ("SITE_URL", "REPOSITORY_URL"))
     if site:

@@ -1,10 +1,10 @@
-"""Copy a built site into the published tree, which has one directory per version, named after its tag.
+"""Copy a built site into the published tree, which has a directory for each version, named after its tag.
 
     python -m website.publish SITE TREE VERSION
 
 A version such as v0.2.0 becomes the directory 0.2.0, and `latest` is a copy of the newest version. Any other name, such
-as `dev`, only becomes a directory. `versions.json` feeds the menu of versions. The JSON schemas of the newest version
-are in `schemas/`, so that their addresses do not change.
+as `dev`, becomes a directory of that name. `versions.json` provides the menu of versions. `schemas/` has the newest
+version's JSON schemas, so that their addresses stay the same.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def number(version: str) -> tuple[int, ...] | None:
 
 
 def publish(site: Path, tree: Path, tag: str) -> None:
-    """Copy a site into the tree under the name of its tag. Raise ValueError for a tag that cannot name a directory."""
+    """Copy a site into the tree under its tag's name. Raise ValueError for a tag that cannot name a directory."""
     version = re.sub(r"^v(?=\d)", "", tag)
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", version) or version in ("latest", "schemas"):
         raise ValueError(f"{tag!r} cannot name a version: use letters, digits, dots and hyphens")

@@ -1,4 +1,4 @@
-"""Generate reference pages from the code: options, commands, settings, schemas, the API."""
+"""Generate the reference pages from the code: options, commands, settings, schemas, the API."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _cell(words: str) -> str:
 
 
 def options() -> str:
-    """Return the page of the plugin's options."""
+    """Return the page on the plugin's options."""
     rows = [
         f"| `{flag.name}{f' {flag.metavar}' if flag.metavar else ''}` | {_cell(flag.help)} |"
         for flag in FLAGS
@@ -67,7 +67,7 @@ def options() -> str:
 
 
 def commands() -> str:
-    """Return the page of the commands, each with its help."""
+    """Return the page on the commands, with the help of each."""
     lines = ["# Commands", "", "Each command prints this text with `--help`.", ""]
     for program, words in COMMANDS:
         name = " ".join((program, *words))
@@ -76,7 +76,7 @@ def commands() -> str:
 
 
 def _help(program: str, words: tuple[str, ...]) -> str:
-    """Return what a command prints with --help, 100 columns wide."""
+    """Return a command's --help output, 100 columns wide."""
     module = {"tarl": "pytest_tarl.commands.cli", "tarl-lint": "tarl_lint.cli"}[program]
     code = f"import sys; sys.argv[0] = {program!r}; from {module} import main; main(sys.argv[1:])"
     environment = {**os.environ, "COLUMNS": "100", "NO_COLOR": "1"}
@@ -85,7 +85,7 @@ def _help(program: str, words: tuple[str, ...]) -> str:
 
 
 def settings() -> str:
-    """Return the page of the settings of tarl-lint."""
+    """Return the page on tarl-lint's settings."""
     rows = [f"| `{key}` | {_cell(kind)} |" for key, (_, kind) in KEYS.items()]
     return "\n".join(
         [
@@ -125,7 +125,7 @@ def schema_page() -> str:
 
 
 def api() -> str:
-    """Return the page of the public API, filled by mkdocstrings."""
+    """Return the page on the public API, filled by mkdocstrings."""
     lines = ["# Python API", ""]
     for group, names in PUBLIC.items():
         lines += [f"## {group}", ""]

@@ -2,8 +2,8 @@
 
     python -m website.terminal
 
-`python -m website.tutorial --write` also draws it if the output of the tutorial has changed. Lines appear as they were
-printed. A command that takes longer than two seconds takes two seconds in the recording.
+`python -m website.tutorial --write` also draws it if the tutorial's output has changed. Lines appear as they were
+printed, but a command that takes longer than two seconds takes only two in the recording.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from website.page_commands import TUTORIAL, Ran, run
 from website.pages import ROOT
 
 TARGET = ROOT / "docs" / "images" / "terminal.svg"
-SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # prefixes of the commands that are shown
-HIDDEN = ("tarl-lint --", "pytest -q\n")  # prefixes of commands that are hidden although SHOWN includes them
+SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # prefixes of the commands to show
+HIDDEN = ("tarl-lint --", "pytest -q\n")  # prefixes of commands that are hidden, although SHOWN includes them
 COLUMNS, ROWS, LINE, CHARACTER, EDGE = 92, 30, 17, 7.4, 14
 TYPED, PAUSE, LONGEST = 0.045, 1.2, 2.0  # pauses in s: per character, after a command's output, per command
 STYLE = """text{font:12.3px ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;fill:#e6e6e6;white-space:pre;\
@@ -30,7 +30,7 @@ opacity:0;animation:show 1ms linear forwards}
 
 
 class Line(NamedTuple):
-    """A line of the terminal, the CSS class that colours it, and the time in s at which it appears."""
+    """A line of the terminal, its CSS class, and when it appears (s)."""
 
     text: str
     kind: str
@@ -38,7 +38,7 @@ class Line(NamedTuple):
 
 
 def kind(text: str) -> str:
-    """Return the CSS class of an output line: `a` for added, `r` for removed, `v` for a verdict, otherwise empty."""
+    """Return the CSS class of an output line: `a` for added, `r` for removed, `v` for a verdict, or empty."""
     if text.startswith(("+", "applied")) or "accepted: " in text:
         return "a"
     if text.startswith(("-", "FAILED")) and not text.startswith("--write"):

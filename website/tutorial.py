@@ -1,8 +1,8 @@
-"""Run the commands of a page, and compare their output with the page or update the page.
+"""Run the commands on a page, and compare their output with the page or update it.
 
     python -m website.tutorial [--write] [PAGE]
 
-If the output of the tutorial has changed, `--write` also draws the recording of the terminal anew.
+If the tutorial's output has changed, `--write` also redraws the recording of the terminal.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from website.terminal import draw
 
 
 def main() -> int:
-    """Run the commands of a page; return 1 if an output differs and the page was not updated."""
+    """Run a page's commands; return 1 if an output differs and the page was not updated."""
     parser = argparse.ArgumentParser(description="Run the commands of a page and compare their output.")
     parser.add_argument("page", nargs="?", type=Path, default=TUTORIAL)
     parser.add_argument("--write", action="store_true", help="update the page with the printed output")
