@@ -24,7 +24,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name on first use: every pytest run loads this package, but few runs use it."""
+    """Import a public name when it is first used: every pytest run loads this package, but few use it."""
     if name in _HOMES:
         from pytest_tarl.extras import missing_extra
 

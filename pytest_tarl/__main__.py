@@ -1,4 +1,4 @@
-"""Make `python -m pytest_tarl` equivalent to the command `tarl`, for robots where `tarl` is not on the PATH."""
+"""Make `python -m pytest_tarl` work like the command `tarl`, for robots where `tarl` is not on the PATH."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reports on one designated test in one mode, and finished comparisons that are not reported yet."""
+"""The report of a designated test in one mode, and finished comparisons that are not reported yet."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.report.table import Row
 
 @dataclass(frozen=True)
 class Account:
-    """The report of one test: summary lines, the reason for failure, the patch to apply, and CI annotations."""
+    """The report of a test: summary lines, reason for failure, patch to apply, and CI annotations."""
 
     lines: tuple[str, ...]
     problem: str = ""
@@ -30,7 +30,7 @@ class Account:
 
 @dataclass(frozen=True)
 class Compared:
-    """A finished comparison. The comparison can be reported as it is, or after correction for multiple testing."""
+    """A finished comparison, to be reported as it is or after correction for multiple testing."""
 
     name: str  # base name of the files to write
     root: Path
@@ -41,7 +41,7 @@ class Compared:
     interrupted: bool = False
 
     def noted(self, note: str) -> Compared:
-        """Return this comparison with an additional note before the others."""
+        """Return this comparison with one more note, before the others."""
         return replace(self, comparison=replace(self.comparison, notes=(note, *self.comparison.notes)))
 
     def told(self) -> Account:
@@ -67,6 +67,6 @@ class Compared:
 
 
 def jointly(compared: Sequence[Compared], alpha: float) -> list[Compared]:
-    """Return the comparisons with their verdicts corrected for multiple testing at level `alpha`."""
+    """Return the comparisons with verdicts corrected for multiple testing at level `alpha`."""
     judged = corrected([one.comparison for one in compared], alpha)
     return [replace(one, comparison=comparison) for one, comparison in zip(compared, judged, strict=True)]

@@ -1,4 +1,4 @@
-"""Analyse the data flow of a test's nodes to find the statements to instrument."""
+"""Analyse the data flow of a test's nodes, to find the statements to instrument."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SETTINGS = (
     ".xml",
     ".cfg",
     ".ini",
-)  # files of parameters or settings
+)  # files with parameters or settings
 
 
 def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
@@ -46,8 +46,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
             )
         paths.append(path)
     with _working_in(root):  # the analysis names files relative to the working directory
-        # a package's __init__.py may export names of other files, so an import from the package may lead through
-        # __init__.py
+        # an import from a package may lead through its __init__.py to another file
         analysis = _analysis([*paths, *imported(paths, root, packages=True)], root)
     if analysis.errors:
         first = analysis.errors[0]
@@ -61,7 +60,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
 
 
 def _what_to_name(paths: Sequence[Path], folder: Path, root: Path) -> str:
-    """Return the advice for nodes without a flow: to name their imported files, if a flow passes through these."""
+    """Return the advice for nodes without a flow: name the imported files, if a flow passes through them."""
     passed = passed_with_imports(paths, root)
     if not passed:
         return "run tarl-lint on these files, and name all files of the node."
@@ -70,7 +69,7 @@ def _what_to_name(paths: Sequence[Path], folder: Path, root: Path) -> str:
 
 
 def passed_with_imports(paths: Sequence[Path], root: Path) -> tuple[Path, ...]:
-    """Return the files that flows pass through when `paths` are analysed together with the files that they import."""
+    """Return the files that flows pass through if `paths` are analysed with the files that they import."""
     more = imported(paths, root)
     if not more:
         return ()
@@ -81,7 +80,7 @@ def passed_with_imports(paths: Sequence[Path], root: Path) -> tuple[Path, ...]:
 
 
 def _analysis(paths: Sequence[Path], root: Path) -> Analysis:
-    """Analyse with the project's settings of tarl-lint, which may name functions that receive or publish messages."""
+    """Analyse with the project's tarl-lint settings, which may name functions that receive or publish messages."""
     try:
         return analyse(paths, root=root, with_settings=True)
     except ConfigError as error:
@@ -89,7 +88,7 @@ def _analysis(paths: Sequence[Path], root: Path) -> Analysis:
 
 
 def instruments(sites: Plan, root: Path) -> Instruments:
-    """Return the positions to instrument in each file, as absolute paths."""
+    """Return the positions to instrument in each file (absolute path)."""
     return Instruments({root / path: at for path, at in sites.positions.items()}, sites.publishes)
 
 

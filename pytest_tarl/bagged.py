@@ -19,11 +19,11 @@ from pytest_tarl.seeds import episode_seeds
 
 @dataclass(frozen=True)
 class BaggedMissions:
-    """A rollout that replays bags instead of running the test's world; `bags` maps each seed to a bag."""
+    """A rollout that replays bags instead of running the test's world; `bags` maps seeds to bags."""
 
     rollout: Rollout
     bags: Mapping[int, Path]
-    notes: tuple[str, ...] = ()  # one note for each skipped bag, with the reason
+    notes: tuple[str, ...] = ()  # one note per skipped bag, with the reason
 
     @property
     def workers(self) -> int:
@@ -35,14 +35,14 @@ class BaggedMissions:
         return self.rollout(replace(plan, bag=self.bags[plan.seed]))
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Start the replay of one mission; do not wait for its result."""
+        """Start replaying a mission, without waiting for the result."""
         return self.rollout.begin(replace(plan, bag=self.bags[plan.seed]))
 
 
 def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options: Options) -> BaggedMissions:
     """Return a rollout of all bags that can be compared.
 
-    Raise LogError if no bag can be compared, SettingsError if the test cannot judge bags.
+    Raise LogError if no bag can be compared, and SettingsError if the test cannot judge bags.
     """
     check(designation)
     taking_part: list[Path] = []
@@ -65,7 +65,7 @@ def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options
 
 
 def misfit(bag: Bag, fixture: Fixture) -> str:
-    """Return why a bag cannot be compared, without a full stop; empty if it can be compared."""
+    """Return why a bag cannot be compared, without a full stop; empty if it can be."""
     held = {absolute(topic): one for topic, one in bag.channels.items()}
     for sensor in fixture.sensors:
         if sensor.topic is None:

@@ -1,10 +1,10 @@
-"""Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far this boundary moved.
+"""Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far it moved.
 
-A confirmed failure is a point of the drift space. In the episodes of the search and of the acceptance test, each
-failing direction takes values from this point to the end of its range, and all other directions stay nominal. If no
-repair is accepted in this region, the search tries a smaller region next to the boundary. An accepted repair is then
-run on fresh draws from the whole declared space. The repair is withheld if it loses reward or successes on these draws,
-or if any boundary comes nearer to the nominal point.
+A confirmed failure is a point of the drift space. The episodes of the search and of the acceptance test draw each
+failing direction between this point and the end of its range; all other directions stay nominal. If no repair is
+accepted in this region, the search tries a smaller one next to the boundary. An accepted repair is then run on fresh
+draws from the whole declared space. It is withheld if it loses reward or successes there, or if it moves any boundary
+nearer to nominal.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ from pytest_tarl.stressing.stress_run import Request, along, stress
 from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 
-DIRECTIONS = 2  # maximum number of repaired failures along one direction; the nearest are chosen
-COMBINATIONS = 1  # maximum number of repaired failures in which several directions differ from nominal
-DRAWS = 60  # number of fresh draws from the whole space
+DIRECTIONS = 2  # maximum number of failures to repair along one direction: the nearest
+COMBINATIONS = 1  # maximum number of failures to repair in which several directions differ from nominal
+DRAWS = 60  # fresh draws from the whole space
 CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses reward or successes
 
 
@@ -57,7 +57,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Placed:
-    """A rollout that runs each episode at the point `place(seed)` of a space, with the files of `overlay` replaced."""
+    """A rollout that runs each episode at point `place(seed)` of a space, with the files of `overlay` replaced."""
 
     rollout: Rollout
     drift: str
@@ -86,7 +86,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Fixed:
-    """The effect of an accepted repair: the margins that it changes, and outcomes in the space without and with it."""
+    """The effect of an accepted repair: changed margins, and outcomes in the space without and with it."""
 
     rows: tuple[Row, ...]
     before: tuple[Outcome, ...]
@@ -95,7 +95,7 @@ class Fixed:
 
     @property
     def loses(self) -> str:
-        """Return why the repair must be withheld, or an empty string."""
+        """Return why the repair must be withheld, or an empty text."""
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
             return f"the boundary of {' and '.join(fragile)} moved nearer to the nominal point"
@@ -113,7 +113,7 @@ class Fixed:
 
     @property
     def moved(self) -> tuple[Moved, ...]:
-        """Return each boundary before and after the repair; a combination of directions comes first."""
+        """Return each boundary before and after the repair, that of a combination of directions first."""
         first = () if self.combination is None else (self.combination,)
         return (*first, *(_moved(row) for row in self.rows))
 
@@ -128,7 +128,7 @@ class Fixed:
 
 @dataclass(frozen=True)
 class Told:
-    """The searches for a repair, the lines of the report, and the patch."""
+    """The repair searches, the lines of the report, and the patch."""
 
     lines: tuple[str, ...]
     patch: Path | None = None
@@ -138,7 +138,7 @@ class Told:
 
 
 def repair_boundary(job: Job, found: Stress) -> Told:
-    """Try to repair the failures, nearest first, until a repair is accepted. Raise RepairError or RecordingError."""
+    """Try to repair the failures, nearest first, until one repair is accepted. Raise RepairError, RecordingError."""
     attempts: list[Attempt] = []
     for failed in chosen(found.failures):
         for region in regions(found.space, failed):
@@ -169,7 +169,7 @@ def _told(
     overlay: Mapping[Path, str],
     attempts: list[Attempt],
 ) -> Told:
-    """Test an accepted repair over the whole space. If the repair is withheld, delete its patch."""
+    """Test an accepted repair over the whole space; if it is withheld, delete its patch."""
     patch = job.root / accepted.patch
     attempt = Attempt(region.words, repair_words(accepted), accepted=True, patch=accepted.patch)
     try:
@@ -195,7 +195,7 @@ def _finished(
 
 
 def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, str], str]:
-    """Search for a repair in a region. Return the repair, the files that it changes, and why none was accepted."""
+    """Search for a repair in a region. Return it with the files that it changes, and why none was accepted."""
     request = job.request
     drift, world = request.drift, region.drift
 
@@ -252,7 +252,7 @@ def _examined(job: Job, found: Stress, failed: Failure, overlay: Mapping[Path, s
 
 
 def _combination(again: Request, space: Space, failed: Failure) -> Moved:
-    """Return the boundary before and after the repair, on the ray from the nominal point through the failure."""
+    """Return the boundary before and after the repair, on the ray from nominal through the failure."""
     curve = along(again, outwards(space, failed))
     length = curve.ray.length
     name = " and ".join(failed.names)
@@ -277,7 +277,7 @@ def _moved(row: Row) -> Moved:
 
 
 def _over_space(job: Job, space: Space, rollout: Rollout) -> tuple[Outcome, ...]:
-    """Return the outcomes at DRAWS points of the whole space; every call uses the same points and seeds."""
+    """Return the outcomes at DRAWS points of the whole space, the same points and seeds in every call."""
     request = job.request
     plans = (
         EpisodePlan(seed, request.drift, point=drawn_point(space, request.drift, seed))

@@ -39,19 +39,19 @@ from pytest_tarl.settling import within
 
 Tables = tuple[
     Floats, Floats
-]  # the utilities of one taint list in the designed and in the deployed world, each of shape (cells, sites)
+]  # a taint list's utilities in the designed and in the deployed world, each of shape (cells, sites)
 
 
 @dataclass(frozen=True)
 class Online:
-    """The result of a comparison, the sample from the deployed world, and the Sarsa tables of that sample."""
+    """The result of a comparison, the deployed world's sample, and its Sarsa tables."""
 
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    # for each check of the verdict: the number of episodes, and the uncorrected p-value of a decrease
+    # for each look at the verdict: number of episodes, and uncorrected p-value of a decrease
     looks: tuple[tuple[int, float], ...] = ()
-    decided: bool = False  # whether the last check has made the verdict final
+    decided: bool = False  # whether the last look has made the verdict final
 
 
 def run_online(
@@ -66,10 +66,10 @@ def run_online(
     tell: Tell | None = None,
     stage: Stage | None = None,
 ) -> Online:
-    """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
+    """Run a scenario's episodes, or read the missions of a log, and compare them with the recording.
 
-    `changeable` holds the IDs of the sites with an operand that a repair can change, if these are known. Such sites
-    rank before all others. If `stage` is given, the comparison ends after that stage, and a later call may continue it.
+    `changeable` has the IDs of the sites with an operand that a repair can change, if known; these rank before all
+    others. If `stage` is given, the comparison stops after it, and a later call may continue.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
@@ -135,7 +135,7 @@ def _formulas(designation: Designation, offline: Sample, online: Sample) -> tupl
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
-    """Fill unknown designed values of the tables in from recorded cells that differ only in the sensors `without`."""
+    """Fill in unknown designed values from recorded cells that differ only in the sensors `without`."""
     return [
         (lent(before, one, offline.cells, without), after)
         for (before, after), one in zip(tables, offline.lists, strict=True)
@@ -143,7 +143,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return each range of a drift with the number that each episode drew from it; `drawn_by` holds the seeds."""
+    """Return each range of a drift, with the number that each episode drew from it; `drawn_by` has the seeds."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -156,7 +156,7 @@ def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int])
 
 @dataclass(frozen=True)
 class _Side:
-    """The source of the deployed episodes: their seeds, the maximum number of looks, and notes for the user."""
+    """Where the deployed episodes come from: seeds, maximum number of looks, and notes for the user."""
 
     rollout: Rollout
     seeds: Sequence[int]
@@ -172,7 +172,7 @@ def _side(
     plan: Plan,
     stage: Stage | None,
 ) -> _Side:
-    """Return the source that the options select: the test's own world, a log or bags."""
+    """Return where the episodes come from, according to the options: the test's own world, a log or bags."""
     if options.log is not None:
         logged = read_log(options.log, fixture, plan, designation.judge, designation.requirements)
         return _Side(logged, range(logged.count), 1, logged.notes)
@@ -184,7 +184,7 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the recording's learning rule. Raise FixtureError if it is unknown or differs from the chosen one."""
+    """Return the recording's learning rule. Raise FixtureError if it is unknown or not the chosen one."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
             f"The recording of {fixture.test} holds a utility learned by {fixture.learner!r}, which this version of "
@@ -200,7 +200,7 @@ def _learner(fixture: Fixture, options: Options) -> str:
 
 @dataclass
 class _Watch:
-    """Stopping rule: compare the worlds at each planned look, and stop the run once the verdict is final."""
+    """Stopping rule: compare the worlds at each planned look; stop once the verdict is final."""
 
     offline: Sample
     designation: Designation
@@ -229,7 +229,7 @@ class _Watch:
 
 
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
-    """Return, for each taint list, the current number of every recorded site, or -1 if the site no longer exists."""
+    """Return, for each taint list, the current number of each recorded site; -1 if it no longer exists."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
 
@@ -267,7 +267,7 @@ def _learned_tables(
 def _compared(
     lists: Sequence[TaintList], tables: Sequence[tuple[Floats, Floats]], rows: Ints
 ) -> tuple[ListComparison, ...]:
-    """Return all taint lists that still have sites, each with its tables and the sums of the tables over `rows`."""
+    """Return all taint lists that still have sites, each with its tables and their sums over `rows`."""
     return tuple(
         ListComparison(one, before, after, localize.slices(one, before, after, rows))
         for one, (before, after) in zip(lists, tables, strict=True)
@@ -276,7 +276,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Return a table whose rows are the cells `rows` with the rows `cells` instead; rows of missing cells are NaN."""
+    """Return a table with rows for `cells` instead of `rows`; missing cells are NaN."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table
@@ -292,6 +292,6 @@ def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell])
 
 
 def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> Ints:
-    """Return the rows over which Eq. 2 sums: the rows of the region or, if it is empty, of the paper's region."""
+    """Return the rows that Eq. 2 sums over: the region or, if it is empty, the paper's region."""
     chosen = {*region.cells, *region.novel} or set(otherwise)
     return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)

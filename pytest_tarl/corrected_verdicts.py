@@ -14,7 +14,7 @@ from pytest_tarl.model import Comparison, Region, Verdict
 
 
 def corrected(comparisons: Sequence[Comparison], alpha: float) -> list[Comparison]:
-    """Return the comparisons of one run with p-values corrected by Holm's method, and the resulting verdicts."""
+    """Return a run's comparisons with p-values corrected by Holm's method, and the resulting verdicts."""
     verdicts = drift.corrected([one.verdict for one in comparisons], alpha)
     return [
         _with_verdict(one, verdict, len(comparisons), alpha)
@@ -49,6 +49,6 @@ def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]
 
 
 def _detectable(comparison: Comparison, alpha: float) -> float:
-    """Return the loss per episode that is detectable at the first, strictest step of the correction."""
+    """Return the detectable loss per episode at the first and strictest step of the correction."""
     offline, online = (np.array(comparison.totals[world]) for world in ("offline", "online"))
     return max(comparison.verdict.tolerance, detectable_loss(offline, online, alpha))

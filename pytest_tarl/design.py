@@ -1,7 +1,7 @@
-"""The designed world of a test: the world as its author wrote it, plus any permanent drifts that were adopted.
+"""The designed world of a test: the world as its author wrote it, plus permanent drifts that were adopted.
 
-The recording stores the names of these drifts, so that everyone who uses a recording runs the same world. Plain test
-runs also read the recording, so this module does not import numpy.
+The recording stores the names of these drifts, so that everyone who uses it runs the same world. Plain test runs also
+read the recording, so this module does not import numpy.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import slug
 from pytest_tarl.spaces import Fault, Point, Space
 
-AS_WRITTEN = "none"  # the drift name that selects the world as its author wrote it
+AS_WRITTEN = "none"  # drift name for the world as its author wrote it
 _HEADER = "header.npy"
-_PREFIX = 10  # number of bytes before the header of a version 1 .npy file
-# maximum size of a header in bytes (10,000 statements take 3 MB); a larger header counts as damaged
+_PREFIX = 10  # bytes before the header of a version 1 .npy file
+# maximum bytes of a header (10,000 statements take 3 MB); a larger one counts as damaged
 _LARGEST = 100_000_000
 
 
@@ -32,19 +32,19 @@ def fixture_path(root: Path, test: str) -> Path:
 
 
 def adopted(path: Path) -> tuple[str, ...]:
-    """Return the names of the permanent drifts in a recording; empty if there is no readable recording."""
+    """Return the permanent drifts named in a recording; none if there is no readable recording."""
     try:
         with ZipFile(path) as archive:
             content = archive.read(_HEADER) if archive.getinfo(_HEADER).file_size <= _LARGEST else b""
         start = _PREFIX + int.from_bytes(content[8:_PREFIX], "little")
         names = json.loads(content[start:]).get("design", ())
         return tuple(map(str, names)) if isinstance(names, list) else ()
-    except Exception:  # the zip archive or the JSON is damaged; this is reported when the recording is loaded
+    except Exception:  # damaged zip or JSON; reported when the recording is loaded
         return ()
 
 
 def adopting(design: tuple[str, ...], name: str | None, drifts: Mapping[str, Drift]) -> tuple[str, ...]:
-    """Return the drifts of the design after a recording under the drift `name`; without a name, these are `design`."""
+    """Return the design's drifts after a recording under drift `name`; without a name, they are unchanged."""
     if name is None:
         return design
     if name == AS_WRITTEN and name not in drifts:
@@ -60,10 +60,10 @@ def value(
     seed: int,
     point: Point | None = None,
 ) -> Any:
-    """Return the value of `tarl_drift` in an episode: that of the design, changed by the scenario; None without both.
+    """Return an episode's `tarl_drift`: the design's value, changed by the scenario; None without both.
 
-    The design includes the nominal values of all spaces. If the scenario is a space, its values are those of `point`;
-    without `point`, the seed determines a random point. Raise SettingsError if the design contains a drift that the
+    The design includes the nominal values of all spaces. If the scenario is a space, its values are those of `point`
+    or, without one, of a random point determined by the seed. Raise SettingsError if the design has a drift that the
     marker no longer declares.
     """
     gone = next((name for name in design if name not in drifts), None)
@@ -88,7 +88,7 @@ def spaces(drifts: Mapping[str, Drift]) -> Mapping[str, Space]:
 def faults(
     drifts: Mapping[str, Drift], scenario: str | None, seed: int, point: Point | None = None
 ) -> Mapping[str, tuple[Fault, float]]:
-    """Return the faults of an episode with their sizes, by direction; the design has no faults."""
+    """Return an episode's faults and their sizes by direction; the design has no faults."""
     space = spaces(drifts).get(scenario or "")
     if space is None or scenario is None:
         return {}
@@ -96,7 +96,7 @@ def faults(
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:
-    """Return the design's drift that the scenario replaces, or "". Two dictionaries are merged and not replaced."""
+    """Return the design's drift that the scenario replaces, or ""; two dictionaries are merged instead."""
     if scenario is None or scenario in design:
         return ""
     return next((name for name in design if not _combines(drifts.get(name), drifts[scenario])), "")

@@ -1,4 +1,4 @@
-"""The checked arguments of a test's marker, as a frozen dataclass; this module does not import pytest."""
+"""A test's marker arguments after checking, as a frozen dataclass; this module does not import pytest."""
 
 from __future__ import annotations
 
@@ -26,33 +26,33 @@ MARKER_ARGUMENTS = (
 
 @dataclass(frozen=True)
 class Designation:
-    """The arguments of `@pytest.mark.tarl`, which makes TARL record and compare a simulation test."""
+    """The arguments of `@pytest.mark.tarl`, by which TARL records and compares a simulation test."""
 
     nodes: tuple[str, ...]
     sensors: tuple[Sensor, ...]
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
-    confidence: float | None = None  # confidence with which the recording must show whether min_success holds
+    confidence: float | None = None  # confidence required to decide whether min_success holds
     total_range: tuple[float, float] | None = None  # smallest and largest possible total reward of an episode
     tolerance: float | None = None
-    # function that computes the rewards that a log lacks
+    # computes the rewards that a log lacks
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = None
-    # function that computes the reward of a mission in a bag, or a class with such a method
+    # computes the reward of a mission in a bag; a function, or a class with such a method
     monitor: Callable[[Any], float | Mapping[str, float]] | None = None
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(
         default_factory=dict
-    )  # direction of a space → the limits of its range, or the options, within which the guarantee must hold
+    )  # direction of a space → limits of its range, or options, within which the guarantee must hold
     purpose: str = ""  # first paragraph of the test's docstring
 
 
 def designation(
     where: str, positional: Sequence[Any], arguments: Mapping[str, Any], said: Said = NOTHING_SAID
 ) -> Designation:
-    """Check a marker's arguments and return them; `said` holds the formulas and signals of the test's body.
+    """Check a marker's arguments and return them; `said` has the formulas and signals in the test's body.
 
-    Raise SettingsError naming the argument and how to fix it.
+    Raise SettingsError, which names the argument and how to fix it.
     """
     if positional:
         raise SettingsError(

@@ -16,9 +16,9 @@ _FIRST = object()  # default of Drift.choice: the first option is nominal
 
 @dataclass(frozen=True)
 class Drift:
-    """The value of a drift scenario, or of one part of it in a dictionary.
+    """The value of a drift scenario, or of one key of it if it is a dictionary.
 
-    `permanent` means that the world has changed for good: a repair need not work in the old world.
+    `permanent` means that the world has changed for good, so a repair need not work in the old world.
     """
 
     value: Any
@@ -28,33 +28,33 @@ class Drift:
     def range(
         cls, low: float, high: float, *, nominal: float | None = None, permanent: bool = False
     ) -> Drift:
-        """Return a drift whose size varies between episodes. Within a space, the range also needs a nominal value.
+        """Return a drift whose size varies between episodes. In a space, the range needs a nominal value.
 
-        Raise SettingsError for an invalid range.
+        Raise SettingsError if the range is invalid.
         """
         return cls(spaces.span(f"Drift.range({low!r}, {high!r})", low, high, nominal), permanent)
 
     @classmethod
     def step(cls, low: float, high: float, *, nominal: float, at: float) -> Drift:
-        """Return a drift that begins at the time `at`, in s; the test receives it as a function of time.
+        """Return a drift that starts at time `at` (s); the test gets it as a function of time.
 
-        Raise SettingsError for an invalid range or moment.
+        Raise SettingsError if the range or the time is invalid.
         """
         return cls._over_time("step", low, high, nominal, profile("step", at))
 
     @classmethod
     def ramp(cls, low: float, high: float, *, nominal: float, at: float, over: float) -> Drift:
-        """Return a drift that grows from the time `at` for `over` seconds; the test receives it as a function of time.
+        """Return a drift that grows for `over` seconds from time `at` on; the test gets it as a function of time.
 
-        Raise SettingsError for an invalid range, moment or duration.
+        Raise SettingsError if the range, the time or the duration is invalid.
         """
         return cls._over_time("ramp", low, high, nominal, profile("ramp", at, over))
 
     @classmethod
     def burst(cls, low: float, high: float, *, nominal: float, at: float, lasts: float) -> Drift:
-        """Return a drift that begins at the time `at` and lasts `lasts` seconds; the test receives a function of time.
+        """Return a drift that starts at time `at` and lasts `lasts` seconds; the test gets it as a function of time.
 
-        Raise SettingsError for an invalid range, moment or duration.
+        Raise SettingsError if the range, the time or the duration is invalid.
         """
         return cls._over_time("burst", low, high, nominal, profile("burst", at, lasts))
 
@@ -66,18 +66,18 @@ class Drift:
 
     @classmethod
     def choice(cls, *options: Any, nominal: Any = _FIRST, permanent: bool = False) -> Drift:
-        """Return a drift that takes one of the options in each episode; the first option is nominal by default.
+        """Return a drift that takes one of the options in each episode; by default, the first one is nominal.
 
-        Raise SettingsError for fewer than two options, or if the nominal value is not an option.
+        Raise SettingsError if there are fewer than two options, or the nominal value is not one of them.
         """
         usual = options[0] if options and nominal is _FIRST else nominal
         return cls(spaces.choice(options, usual), permanent)
 
     @classmethod
     def space(cls, **directions: Drift | Fault) -> Drift:
-        """Return a drift with several directions; each is a range with a nominal value, a choice or a fault.
+        """Return a drift with several directions: ranges with a nominal value, choices or faults.
 
-        Raise SettingsError for a direction of another kind, or a range without a nominal value.
+        Raise SettingsError for any other direction, or a range without a nominal value.
         """
         parts = {name: one.value if isinstance(one, Drift) else one for name, one in directions.items()}
         lasting = [name for name, one in directions.items() if isinstance(one, Drift) and one.permanent]
@@ -90,14 +90,14 @@ class Drift:
 
     @property
     def spans(self) -> Mapping[str, Span]:
-        """Return the ranges by dictionary key; the key is "" if the whole value is a range."""
+        """Return the ranges by dictionary key; if the whole value is a range, the key is ""."""
         return dict(_spans(self.value, ""))
 
 
 def drift(where: str, name: str, value: Any) -> Drift:
-    """Return a scenario of a marker as a Drift.
+    """Return a marker's scenario as a Drift.
 
-    Raise SettingsError if the parts of the scenario contradict each other.
+    Raise SettingsError if parts of the scenario contradict each other.
     """
     whole = value if isinstance(value, Drift) else Drift(value)
     if isinstance(whole.value, Drift):
@@ -123,9 +123,9 @@ def drift(where: str, name: str, value: Any) -> Drift:
 
 
 def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any:
-    """Return the value of the scenario `name` in the episode of a seed; each range is replaced by a drawn number.
+    """Return the value of scenario `name` in the episode with this seed; ranges are replaced by drawn numbers.
 
-    A space takes the values of `point` or, if `point` is None, those of a point that is drawn.
+    A space takes the values of `point`; without one, those of a drawn point.
     """
     if isinstance(whole.value, Space):
         return whole.value.world(drawn_point(whole.value, name, seed) if point is None else point)
@@ -133,17 +133,17 @@ def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any
 
 
 def drawn_point(space: Space, name: str, seed: int) -> Point:
-    """Return the point that the episode of a seed draws from the space of the scenario `name`."""
+    """Return the point that the episode with this seed draws from the space of scenario `name`."""
     return {part: _number(extent, _stream(name, part), seed) for part, extent in space.extents.items()}
 
 
 def sizes(whole: Drift, name: str, seed: int) -> Mapping[str, float]:
-    """Return the numbers that the episode of a seed draws from the ranges, by dictionary key."""
+    """Return the numbers that the episode with this seed draws from the ranges, by dictionary key."""
     return {part: _draw(span, _stream(name, part), seed) for part, span in whole.spans.items()}
 
 
 def combined(values: Sequence[Any]) -> Any:
-    """Combine several drift values: merge dictionaries; otherwise the last value wins."""
+    """Combine several drift values: dictionaries are merged; otherwise the last value wins."""
     if all(isinstance(value, Mapping) for value in values):
         return {key: part for value in values for key, part in value.items()} if values else None
     return values[-1]

@@ -1,4 +1,4 @@
-"""Check an episode that has ended: whether it is usable, and what the user should know about it."""
+"""Check whether a finished episode is usable, and what to tell the user about it."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class EndedEpisode:
-    """What an episode leaves when it ends."""
+    """What is left of an episode when it ends."""
 
     rewards: int  # number of steps with a reward
     requirements: Requirements
     situation: Situation
     faults: Faults
-    # whether a drift or a fault is active; if so, it is no error if a node publishes nothing
+    # whether a drift or a fault is active; nodes that publish nothing are then no error
     drifted: bool
-    # whether a repair candidate runs; under a good candidate, a watchdog node may have nothing to publish in a mission
+    # whether a repair candidate runs; with a good one, a watchdog node may have nothing to publish
     changed: bool
     ros: Ros | None  # the ROS of the episode; None if the test did not use ROS
     drives_ros: bool  # whether nodes were started
     replay: Replay | None  # the recorded mission, if the episode replays one
-    unrecorded: Mapping[Path, tuple[Position, ...]]  # per file, the statements that cannot be recorded
+    unrecorded: Mapping[Path, tuple[Position, ...]]  # by file, the statements that cannot be recorded
 
     def notes(self) -> tuple[str, ...]:
         """Return notes for the user on a usable episode; complete only after `close`."""
@@ -49,7 +49,7 @@ class EndedEpisode:
         return (*ended, *missing, *started, *replayed, *self._silence())
 
     def _silence(self) -> tuple[str, ...]:
-        """Return a note if a drift of the world, and not a declared fault, made the nodes silent."""
+        """Return a note if a drift of the world, rather than a declared fault, kept the nodes silent."""
         if not self.drifted or self.faults.active or not self._silent:
             return ()
         told = (
@@ -59,7 +59,7 @@ class EndedEpisode:
         return (told,)
 
     def problem(self) -> TarlError | None:
-        """Return why the episode is unusable, such as a test without rewards, or None if it is usable."""
+        """Return why the episode is unusable (such as a test without rewards), or None if it is usable."""
         if self.replay is not None:
             return self._unplayed(self.replay)
         if not self.rewards and self.requirements.rewarding:
@@ -73,14 +73,14 @@ class EndedEpisode:
                 "tarl.reward(world.monitor())."
             )
         if self.drifted:
-            return None  # this is not an error, because a drift may silence sensors and nodes
+            return None  # not an error, because a drift may silence sensors and nodes
         return self._unmet()
 
     def silence(self) -> str:
-        """Return which sensor or node was silent in the whole episode and what to check, or "".
+        """Return which sensor or node was silent in the whole episode and what to check, or an empty text.
 
-        A mission without messages is not an error if other missions have messages: a door may stay closed, or a battery
-        may stay full. Drifts and repair candidates may silence a node in all missions.
+        A mission without messages is no error if other missions have some: a door may stay closed, or a battery may
+        stay full. Drifts and repair candidates may silence a node in all missions.
         """
         if self.replay is not None or self.drifted:
             return ""
@@ -101,11 +101,11 @@ class EndedEpisode:
 
     @property
     def _heard(self) -> str:
-        """Return the topics to which nodes subscribe."""
+        """Return the topics that nodes subscribe to."""
         return ", ".join(sorted(self.ros.subscribed if self.ros is not None else ())) or "no topic"
 
     def _unmet(self) -> SettingsError | None:
-        """Return the error for a declared fault whose topic or node did not occur, or None if all occurred."""
+        """Return the error for a declared fault whose topic or node did not occur, or None."""
         if self.ros is None:
             return None
         try:
@@ -115,7 +115,7 @@ class EndedEpisode:
         return None
 
     def _unplayed(self, replay: Replay) -> RecordingError | None:
-        """Return why nothing can be learned from the replay of a bag, or None."""
+        """Return why nothing can be learned from a bag's replay, or None."""
         name = replay.bag.path.name
         if not replay.begun:
             return RecordingError(

@@ -1,4 +1,4 @@
-"""The fixture `tarl` of a designated test: one episode, from seed to trace."""
+"""The fixture `tarl` of a designated test: an episode, from its seed to its trace."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ if TYPE_CHECKING:
     from pytest_tarl.ros import Bus, Ros
     from pytest_tarl.starting import Replacement
 
-_LAST = 2**31 - 1  # largest seconds of a time of ROS 2, an int32
+_LAST = 2**31 - 1  # largest number of seconds in a ROS 2 time (int32)
 
 
 class Tarl:
-    """The fixture `tarl`: random numbers, the in-process ROS, sensors and reward of one episode."""
+    """The fixture `tarl`: random numbers, in-process ROS, sensors and reward of one episode."""
 
     def __init__(
         self,
@@ -66,11 +66,11 @@ class Tarl:
         self._kind = kind
         self._nodes = tuple(nodes)
         self._replay = replay
-        # a recorded mission already contains the faults of its robot
+        # a recorded mission already includes the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
-        # whether a drift is active; if so, it is no error if a node publishes nothing
+        # whether a drift is active; nodes that publish nothing are then no error
         self._drifted = drifted or bool(self._faults.active)
-        self._changed = changed  # whether the text of a repair candidate runs in place of a file
+        self._changed = changed  # whether a repair candidate replaces the text of a file
         self._outputs = outputs
         self._recorder = recorder
         self._imports = imports
@@ -78,26 +78,26 @@ class Tarl:
         self._streams: dict[str, np.random.Generator] = {}
         self._ros: Ros | None = None
         self._starter = Starter(folder, imports, lambda: self.ros)
-        self._origin = 0  # virtual time at the start of the episode (ns)
+        self._origin = 0  # virtual time (ns) at the start of the episode
         self._requirements = requirements
-        self._alone = alone  # whether this is the only episode, as in a run of pytest without TARL
+        self._alone = alone  # whether this is the only episode, as in a pytest run without TARL
         self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)
         self._situation = Situation(tuple(sensors), requirements, self._formulas, recorder)
         self.topics = self._situation.topics
         self.values = self._situation.values
-        self.simulator: Simulator | None = None  # the external simulator, if the test starts one
+        self.simulator: Simulator | None = None  # the external simulator, if the test uses one
         self._open = ExitStack()
         self._open.enter_context(imports)
 
     def rng(self, name: str) -> np.random.Generator:
-        """Return the episode's random generator of that name. All calls with the same name return the same object."""
+        """Return the episode's random generator of this name; the same name always gives the same object."""
         if name not in self._streams:
             self._streams[name] = seeds.generator(self.seed, name)
         return self._streams[name]
 
     @property
     def ros(self) -> Ros:
-        """The ROS of this episode: the in-process one, or the real one under `--tarl-ros=real`."""
+        """Return the ROS of this episode: the in-process one, or a real one with `--tarl-ros=real`."""
         if self._ros is None:
             from pytest_tarl.realros.choice import make_ros
 
@@ -114,22 +114,22 @@ class Tarl:
 
     @property
     def bus(self) -> Bus:
-        """The simulated world's access to topics: `publish` to the nodes, and read the `latest` message of a node."""
+        """Return the simulated world's topics: `publish` to nodes, and read a node's `latest` message."""
         return self.ros.bus
 
     @property
     def parameters_read(self) -> Mapping[str, bool | int | float]:
-        """The numbers that nodes have read as parameters, by absolute name; empty under the real ROS."""
+        """Return the numbers that nodes have read as parameters, by absolute name; empty with a real ROS."""
         return dict(getattr(self._ros, "parameters_read", {}))
 
     @property
     def judged(self) -> tuple[Judged, ...]:
-        """The results of the formulas; available after `conclude`."""
+        """Return the results of the formulas; available after `conclude`."""
         return self._formulas.judged
 
     @property
     def now(self) -> float:
-        """Virtual seconds since the episode began."""
+        """Return the virtual seconds since the episode began."""
         return self.ros.now if self.simulator is None else self._now / 1e9
 
     def start(
@@ -142,13 +142,16 @@ class Tarl:
         entry: str | None = None,
         launch: str | Literal[False] | None = None,
     ) -> None:
-        """Start a node: a file relative to the test's folder, run as a program. Raise NodeError if the node fails.
+        """Start a node: a file relative to the test's folder, run as a program. Raise NodeError if it fails.
 
-        `entry` names the function to call if the node is an entry point in `setup.py`: `entry="main"` for
-        `driver = robot.driver:main`. `argv` is the node's command line, including remappings. `parameters` apply to all
-        nodes of the episode: a mapping, or the path of a YAML file relative to the test's folder. Further parameters,
-        and the command line if `argv` is empty, come from the launch file `launch`. Without `launch`, TARL searches the
-        workspace for launch files that start the script; with `launch=False`, it reads no launch file.
+        - `entry`: the function to call if the node is an entry point in `setup.py`, such as `entry="main"` for `driver
+          = robot.driver:main`.
+        - `argv`: the node's command line, including remappings.
+        - `parameters`: parameters for all nodes of the episode, as a mapping or as the path of a YAML file relative to
+          the test's folder.
+        - `launch`: the launch file that provides further parameters, and the command line if `argv` is empty. By
+          default, TARL looks for launch files in the workspace that start the script. With `launch=False`, it reads
+          none.
         """
         self.drives_ros = True
         self._starter.start(script, name, argv, parameters, entry, launch)
@@ -164,14 +167,17 @@ class Tarl:
     ) -> None:
         """Start the Python nodes of a launch file, with their names, namespaces, remappings and parameters.
 
-        `file` is a path relative to the test's folder, the name of a launch file in the workspace, or `package/name`.
-        `arguments` are its launch arguments, and `only` holds the names of the nodes to start. `replace` maps the name
-        of a node to a function that runs in its place. The function receives a `StandIn`, which publishes and
-        subscribes under the topic names that the node's code uses. A note names the nodes that are neither Python nor
-        replaced. `parameters`, a mapping or the path of a YAML file, apply to all nodes and take precedence over those
-        of the launch file.
+        - `file`: a path relative to the test's folder, the name of a launch file in the workspace, or `package/name`.
+        - `arguments`: the launch arguments.
+        - `only`: the names of the nodes to start.
+        - `replace`: node name → function that runs instead. The function gets a `StandIn`, which publishes and
+          subscribes under the topic names in the node's code.
+        - `parameters`: parameters for all nodes, as a mapping or as the path of a YAML file. They take precedence over
+          those of the launch file.
 
-        Raise SettingsError for an unknown file, argument or node, NodeError if a node fails.
+        A note lists the nodes that are neither Python nor replaced.
+
+        Raise SettingsError for an unknown file, argument or node, and NodeError if a node fails.
         """
         self.drives_ros = True
         self._starter.launch(file, arguments or {}, only, replace or {}, parameters)
@@ -191,8 +197,8 @@ class Tarl:
     ) -> Simulator:
         """Start a simulator as the world of this episode; call this before `start`.
 
-        The simulator uses a real ROS. Nodes receive what the simulator publishes, and the simulator receives what
-        they publish. `tarl.step` runs both.
+        The simulator uses a real ROS. Nodes receive what it publishes, and it receives what they publish. `tarl.step`
+        runs both.
 
         Args:
             command: The program, run in the test's folder. Its environment sets TARL_SEED and a private ROS domain
@@ -238,7 +244,7 @@ class Tarl:
     def step(self, dt: float) -> None:
         """Run the nodes and advance virtual time by `dt` seconds, until every node waits again.
 
-        Raise SettingsError for an invalid `dt`.
+        Raise SettingsError if `dt` is invalid.
         """
         seconds = as_number(dt)
         if seconds is None or not 0 <= seconds < math.inf:
@@ -251,7 +257,7 @@ class Tarl:
         self._stepped()
 
     def _replayed(self, replay: Replay, dt: float) -> None:
-        """Replay a recorded mission in place of the rest of the test's body."""
+        """Replay a recorded mission instead of running the rest of the test's body."""
         from pytest_tarl.bags.replay import MissionReplayed
 
         def close(judgement: Judgement | None) -> None:
@@ -265,7 +271,7 @@ class Tarl:
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
-        """Report a message that the test passed to the node without the bus, so that sensors and signals can read it.
+        """Report a message that the test passed to the node without the bus; sensors and signals then read it.
 
         Raise SettingsError if the topic is not a string.
         """
@@ -277,14 +283,14 @@ class Tarl:
         self._situation.hear(topic, message)
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminals of all running nodes, or only on the terminal of `node` (a file or node name).
+        """Type text on the terminals of all running nodes, or only of `node` (a file or node name).
 
-        Raise SettingsError if no such node runs.
+        Raise SettingsError if no such node is running.
         """
         self.ros.type(text, node)
 
     def observe(self, **values: Any) -> None:
-        """Set the values of sensors without a topic and of signals used in formulas."""
+        """Set the values of sensors without a topic, and of signals in formulas."""
         self._situation.observe(values)
 
     def require(self, formula: str) -> None:
@@ -295,29 +301,29 @@ class Tarl:
         self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
-        """Set the reward of this simulation step; call this method once per step.
+        """Set the reward of this simulation step; call this once per step.
 
-        Named parts are summed, and the report also shows each part.
+        Named parts are summed, and the report shows each of them.
 
-        Raise SettingsError for a value that is not a finite number.
+        Raise SettingsError if a value is not a finite number.
         """
         self._recorder.reward(*checked_reward(total, parts, by_formulas=self._requirements.rewarding))
         self._rewards += 1
 
     def at_end(self, call: Callable[[], object]) -> None:
-        """Register a function to call at the end of the episode, even after an error; the newest is called first."""
+        """Register a function to call when the episode ends, even after an error; the newest is called first."""
         self._open.callback(call)
 
     def conclude(self, ended: BaseException | None) -> None:
         """Evaluate the formulas after the body; `ended` is its exception. Raise RequirementError for a violation.
 
-        If the body itself failed, do not raise: pytest reports the body's error.
+        If the body itself failed, raise nothing: pytest reports the body's error.
         """
         whole = ended is None or (self._replay is not None and self._replay.done)
         self._formulas.conclude(whole=whole, alone=self._alone)
 
     def rewarded(self, trace: Trace) -> Trace:
-        """Return the trace; with `reward="robustness"` in the marker, the formulas replace its rewards."""
+        """Return the trace; with the marker's `reward="robustness"`, formulas replace its rewards."""
         rewards = self._formulas.rewards()
         if rewards is None:
             return trace
@@ -340,11 +346,11 @@ class Tarl:
         return self._ros.notes if self._ros is not None else ()
 
     def silence(self) -> str:
-        """Return which sensor or node was silent in the whole episode, or ""."""
+        """Return which sensor or node was silent in the whole episode, or an empty text."""
         return self._ended().silence()
 
     def problem(self) -> TarlError | None:
-        """Return why the episode is unusable, such as a test without rewards, or None if it is usable."""
+        """Return why the episode is unusable (such as a test without rewards), or None if it is usable."""
         return self._ended().problem()
 
     def _ended(self) -> EndedEpisode:
@@ -363,7 +369,7 @@ class Tarl:
 
     @property
     def _now(self) -> int:
-        """Return the virtual time since the start of the episode, or of the recorded mission, in ns."""
+        """Return the virtual time (ns) since the start of the episode or of the recorded mission."""
         return 0 if self._ros is None else self._ros.scheduler.time - self._origin
 
     def _stepped(self) -> None:

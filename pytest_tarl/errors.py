@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
-MOST_TEXT: Final = 4000  # characters of an error's message that are shown, two screens of a terminal
+MOST_TEXT: Final = 4000  # maximum characters of an error's message to show (two screens of a terminal)
 
 
 class TarlError(Exception):
-    """Base of all errors shown to the user as a sentence, without a traceback."""
+    """Base of all errors that users see as a sentence, without a traceback."""
 
 
 class SettingsError(TarlError):
@@ -16,7 +16,7 @@ class SettingsError(TarlError):
 
 
 class FixtureError(TarlError):
-    """A recording is missing or damaged, or belongs to another test or format. `what` is the message without advice."""
+    """A recording is missing, damaged, or of another test or format. `what` is the message without advice."""
 
     def __init__(self, what: str, advice: str = "") -> None:
         super().__init__(f"{what} {advice}".rstrip())
@@ -28,7 +28,7 @@ class AnalysisError(TarlError):
 
 
 class RecordingError(TarlError):
-    """A test run cannot be recorded: no reward, silent sensor, node that fails to start."""
+    """A test run cannot be recorded: no reward, a silent sensor, or a node that fails to start."""
 
 
 class SimulatorError(RecordingError):
@@ -36,7 +36,7 @@ class SimulatorError(RecordingError):
 
 
 class SimulatorLostError(SimulatorError):
-    """An external simulator died or hung; its episode is run again with a new one. `why` is the reason in brief."""
+    """An external simulator died or hung; the episode is repeated with a new one. `why` is the reason in brief."""
 
     def __init__(self, text: str, why: str = "") -> None:
         super().__init__(text)
@@ -44,7 +44,7 @@ class SimulatorLostError(SimulatorError):
 
 
 class RequirementError(AssertionError):
-    """A formula does not hold in an episode, so the episode counts as a failed mission."""
+    """A formula does not hold in an episode, which therefore counts as a failed mission."""
 
 
 class LogError(TarlError):
@@ -52,11 +52,11 @@ class LogError(TarlError):
 
 
 class FleetError(TarlError):
-    """A fleet's data set cannot be read or written, or its files are damaged or have another format."""
+    """A fleet's data set cannot be read or written, or its files are damaged or in another format."""
 
 
 class MonitorError(TarlError):
-    """`tarl watch` cannot run: its state file is damaged, in use, or belongs to another watch."""
+    """`tarl watch` cannot run: its state file is damaged, in use, or of another watch."""
 
 
 class NodeError(TarlError):
@@ -64,7 +64,7 @@ class NodeError(TarlError):
 
 
 class StuckNodeError(NodeError):
-    """A node ran without ever waiting. Since such an episode takes seconds, the run stops at the first one."""
+    """A node never waits. Such an episode takes seconds, so the run stops after the first one."""
 
 
 class UnsupportedApiError(TarlError):
@@ -72,37 +72,37 @@ class UnsupportedApiError(TarlError):
 
 
 class UnsupportedNameError(UnsupportedApiError, AttributeError):
-    """A node reads a name that a ROS module of the in-process ROS lacks. The error makes `hasattr` return False."""
+    """A node reads a name that is missing from a module of the in-process ROS; `hasattr` returns False."""
 
 
 class UnsupportedImportError(UnsupportedApiError, ImportError):
-    """A node imports a name that a ROS module of the in-process ROS lacks. The node may catch this error."""
+    """A node imports a name that is missing from a module of the in-process ROS; it may catch this error."""
 
 
 class UnsupportedModuleError(UnsupportedApiError, ModuleNotFoundError):
-    """A node imports a ROS module that the in-process ROS does not implement. The node may catch this ImportError."""
+    """A node imports a ROS module that the in-process ROS does not implement; it may catch this error."""
 
 
 class RepairError(TarlError):
-    """A mutation cannot be written to the source."""
+    """A change cannot be written to the source code."""
 
 
 class StaleTextError(TarlError):
-    """A candidate repair replaced a file's text, but the episode ran the previous text."""
+    """A repair candidate replaced a file's text, but the episode ran the old text."""
 
 
 class SearchError(TarlError):
-    """A plugged-in search breaks the search protocol."""
+    """A user's search breaks the search protocol."""
 
 
 class RefusedError(TarlError):
-    """A command is valid but would cause harm in the current state, so it changed nothing."""
+    """A command is valid, but would do harm in the current state, so it changed nothing."""
 
 
 def text_of(said: object) -> str:
-    """Return the message of an error of other code, cut to `MOST_TEXT` characters.
+    """Return the message of an error from other code, cut to `MOST_TEXT` characters.
 
-    The error's `__str__` may raise any exception; the returned text then names this exception.
+    The error's `__str__` may itself raise an exception; the returned text then names that exception.
     """
     try:
         text = str(said)
@@ -114,6 +114,6 @@ def text_of(said: object) -> str:
 
 
 def first_line(error: BaseException | None) -> str:
-    """Return the first line of an error's message, or the name of its class if the message is empty."""
+    """Return the first line of an error's message, or its class name if the message is empty."""
     text = text_of(error).strip()
     return text.splitlines()[0] if text else type(error).__name__

@@ -1,4 +1,4 @@
-"""Packages that the plugin and the commands need in addition to the linter, and messages if they are missing."""
+"""Packages that the plugin and the commands need besides those of the linter, and messages if they are missing."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ SOBOL = ("SALib",)
 
 
 def missing_packages() -> list[str]:
-    """Return the names of packages in the extra `pytest` that are not installed, without importing any."""
+    """Return the packages of the extra `pytest` that are not installed, without importing them."""
     return [name for name in NEEDED if find_spec(name) is None]
 
 
 def missing_extra(what: str) -> str | None:
-    """Return a sentence that names the missing packages that `what` needs; None if all are installed."""
+    """Return a sentence that names the packages missing for `what`; None if all are installed."""
     return _sentence(what, missing_packages(), "pytest") or no_lock(what)
 
 
@@ -49,7 +49,7 @@ def missing_sobol(what: str) -> str | None:
 
 
 def install_command(extra: str) -> str:
-    """Return the command that installs an extra, from the local source tree if tarl was installed from one."""
+    """Return the command that installs an extra, from the local source tree if tarl comes from one."""
     origin = _source_tree()
     if origin is None:
         return f'pip install "tarl[{extra}]"'
@@ -58,13 +58,13 @@ def install_command(extra: str) -> str:
 
 
 def _source_tree() -> tuple[str, bool] | None:
-    """Return the local folder from which pip installed tarl, and whether the install is editable (PEP 610)."""
+    """Return the local folder that pip installed tarl from, and whether the install is editable (PEP 610)."""
     try:
         record = json.loads(distribution("tarl").read_text("direct_url.json") or "{}")
         url = urlsplit(record["url"])
         editable = bool(record["dir_info"].get("editable"))
     except (PackageNotFoundError, ValueError, KeyError, TypeError):
-        return None  # installed from a package index, an archive or a repository, so there is no local clone
+        return None  # installed from an index, an archive or a repository: there is no local clone
     return (url2pathname(url.path), editable) if url.scheme == "file" else None
 
 
@@ -76,11 +76,11 @@ def _sentence(what: str, missing: list[str], extra: str) -> str | None:
 
 
 def no_lock(what: str) -> str | None:
-    """Return a sentence if Python runs without its global interpreter lock (3.13t, 3.14t), else None.
+    """Return a sentence if Python runs without a global interpreter lock (3.13t, 3.14t), or None.
 
     Recording needs the lock, because one thread appends events while another removes them.
     """
-    enabled = getattr(sys, "_is_gil_enabled", None)  # exists from Python 3.13 on
+    enabled = getattr(sys, "_is_gil_enabled", None)  # exists since Python 3.13
     if enabled is None or enabled():
         return None
     return f"{what} needs the global interpreter lock, which is off in this Python: set PYTHON_GIL=1 and run it again."

@@ -10,14 +10,15 @@ _INDEX = re.compile(r"\[\s*(-?\d+)\s*\]")
 
 
 def dotted(field: str) -> str:
-    """Return a field with indices as in Python, such as `ranges[0]` or `poses[-1].x`, as a dotted path."""
+    """Return a field with Python indices, such as `ranges[0]` or `poses[-1].x`, as a dotted path."""
     return _INDEX.sub(r".\1", field).removeprefix(".")
 
 
 def field_value(message: Any, field: str) -> Any:
     """Follow a dotted path; a number indexes a sequence (`ranges.0`).
 
-    Raise AttributeError or IndexError if the message has no such field or element, and KeyError if a mapping has none.
+    Raise AttributeError or IndexError if the message does not have the field or element, and KeyError if a mapping does
+    not.
     """
     for part in field.split("."):
         if isinstance(message, Mapping):

@@ -12,14 +12,14 @@ from pathlib import Path
 
 from tarl_lint.files import open_beside
 
-FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows does not define EDQUOT
-# size in bytes of the file that is written to check whether a disk is full; most file systems allocate at least this
+FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows has no EDQUOT
+# bytes written to check whether a disk is full; most file systems allocate at least this much
 BLOCK = 4096
 DIFFERENT = (errno.EROFS, errno.EACCES, errno.EPERM)
 
 
 def advice_on(problem: OSError) -> str:
-    """Return advice to the user on a file that cannot be written."""
+    """Return advice for the user about a file that cannot be written."""
     if problem.errno in FULL:
         return "the disk or your quota is full: free some space and run the command again."
     if problem.errno == errno.EFBIG:
@@ -36,7 +36,7 @@ def advice_on(problem: OSError) -> str:
 
 
 def unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
-    """Return one sentence for each reason why files below `root` were not written; each sentence ends with advice."""
+    """Return one sentence, ending with advice, for each reason why files below `root` were not written."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for path, problem in failed.items():
         shown = path.relative_to(root).as_posix()
@@ -45,7 +45,7 @@ def unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
 
 
 def check_writable(path: Path) -> None:
-    """Raise OSError if a file cannot be written. Remove everything that the check itself creates."""
+    """Raise OSError if a file cannot be written. Remove everything that the check creates."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if path.exists() and not path.is_file():
@@ -55,22 +55,22 @@ def check_writable(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, beside = open_beside(path)
         try:
-            # most file systems can create an empty file although the disk or the quota is full
+            # most file systems can create an empty file even if the disk or the quota is full
             with os.fdopen(handle, "wb") as file:
                 file.write(bytes(BLOCK))
         finally:
             beside.unlink()
     finally:
         for folder in made:
-            with suppress(OSError):  # the folder was not created, or another run uses it
+            with suppress(OSError):  # the folder was not created, or another run is using it
                 folder.rmdir()
 
 
 def existing(folder: Path, name: str | os.PathLike[str]) -> Path | None:
     """Return the resolved path of a file or folder that a test names, or None if it does not exist.
 
-    Return None for a loop of links, and for a name that no file can have: with a NUL, with a lone surrogate, or too
-    long.
+    Return None also for a loop of links, and for an impossible name: one that contains a NUL or a lone surrogate, or is
+    too long.
     """
     try:
         path = (folder / name).resolve(strict=True)
@@ -80,14 +80,14 @@ def existing(folder: Path, name: str | os.PathLike[str]) -> Path | None:
 
 
 def slug(text: str) -> str:
-    """Return a string as a valid part of a file name."""
+    """Return a string as part of a valid file name."""
     return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]
 
 
 def read_regular(path: Path) -> bytes:
-    """Return the content of a regular file. Raise OSError for other kinds of files, such as a named pipe or a device.
+    """Return the content of a regular file. Raise OSError for other files, such as named pipes or devices.
 
-    Reading another kind of file could block or never end.
+    Reading other files could block or never end.
     """
     # without O_NONBLOCK, open() on a pipe waits for a writer; Windows has neither the flag nor such pipes
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

@@ -1,8 +1,8 @@
 """Run the `__del__` methods of a node's objects when its episode ends.
 
-Objects of a node are in reference cycles, so Python would run their `__del__` at some later allocation, perhaps while
-it parses a file in the next episode. An error in such a `__del__` would then end the whole run: reporting it needs
-another parse, of a line of the traceback, and Python 3.11 cannot parse inside `ast.parse`.
+A node's objects are in reference cycles, so Python would run their `__del__` at some later allocation, perhaps while
+parsing a file in the next episode. An error in such a `__del__` would then end the whole run: to report it, Python has
+to parse a line of the traceback, and Python 3.11 cannot parse inside `ast.parse`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ METHOD = b"def __del__"
 
 
 def run_finalizers(nodes: Iterable[Path]) -> None:
-    """Collect garbage if the file of a node defines `__del__`; other nodes cost nothing."""
+    """Collect garbage if a node's file defines `__del__`; for other nodes, do nothing."""
     if any(_defines(node, _changed(node)) for node in nodes):
         gc.collect()
 

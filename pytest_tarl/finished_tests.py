@@ -1,4 +1,4 @@
-"""A finished test of a TARL run. It is reported to pytest at once or, if tests are judged together, at the end."""
+"""A finished test of a TARL run, reported to pytest at once or, if tests are judged together, at the end."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class FinishedTest:
         elif error is not None and isinstance(error.__context__, FixtureError):
             attach(
                 report, Account((str(error),), unrecorded=True)
-            )  # the test is skipped, and pytest shows the reason of a skip only with -rs
+            )  # the test is skipped; pytest shows why only with -rs
         return report
 
 
@@ -80,5 +80,5 @@ def started(item: pytest.Item) -> None:
 
 
 def passed(item: pytest.Item, when: Literal["setup"]) -> pytest.TestReport:
-    """Return the report of a phase in which nothing failed."""
+    """Return the report of a phase without failure."""
     return pytest.TestReport.from_item_and_call(item, pytest.CallInfo.from_call(lambda: None, when=when))

@@ -1,4 +1,4 @@
-"""Check numbers from users: they must be finite and must not be booleans."""
+"""Check that numbers from users are finite and not booleans."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.sensors import as_number
 
 
 def finite_number(value: Any) -> float | None:
-    """Return a finite real number or numpy scalar as a float, or None for a boolean or any other value."""
+    """Return a finite real number or numpy scalar as a float; None for anything else, including booleans."""
     dtype = getattr(value, "dtype", None)
     if isinstance(value, bool) or getattr(dtype, "kind", "") == "b":
         return None

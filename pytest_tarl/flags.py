@@ -1,4 +1,4 @@
-"""The flags that TARL adds to pytest: their names and types, which of them start a TARL run, and hints on typos."""
+"""The flags that TARL adds to pytest: names and types, which of them start a TARL run, and hints on typos."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PREFIX = "--tarl-"
 
 
 class Flag(NamedTuple):
-    """A command line flag; it takes no value unless it has a `metavar`."""
+    """A command line flag; it has a value only if it has a `metavar`."""
 
     name: str
     help: str
@@ -22,16 +22,16 @@ class Flag(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Return the flag's key in the values passed to `options.options`."""
+        """Return the flag's key in the argument of `options.options`."""
         return self.name.removeprefix(PREFIX)
 
     @property
     def unset(self) -> Any:
-        """Return the value that applies if neither the command line nor the ini file has one."""
+        """Return the value if neither the command line nor the ini file sets one."""
         return False if self.metavar is None else self.default
 
     def declaration(self) -> dict[str, Any]:
-        """Return the keyword arguments of argparse's `add_argument`."""
+        """Return the keyword arguments for argparse's `add_argument`."""
         if self.metavar is None:
             return {"action": "store_true", "help": self.help}
         if self.many:
@@ -173,7 +173,7 @@ FLAGS = (
 
 
 def misspelt(unknown: Iterable[str]) -> str | None:
-    """Return a hint on the first unknown argument that resembles a flag of TARL, or None if none does."""
+    """Return a hint on the first unknown argument that resembles a flag of TARL, or None."""
     for word in unknown:
         name = word.partition("=")[0]
         if name.startswith(PREFIX):

@@ -1,4 +1,4 @@
-"""Find the calls of `observe` and `require` in the source of a test's modules, without running them."""
+"""Find calls of `observe` and `require` in the source of a test's modules, without running them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CALLS = (b".observe(", b".require(")
 
 
 def said(test: str, root: Path) -> Said:
-    """Return the signals and formulas in a test's modules; `test` is a node ID. Skip other tests of the same file."""
+    """Return the signals and formulas in a test's modules, except in other tests of its file; `test` is a node ID."""
     name, *parts = test.partition("[")[0].split("::")
     first = (root / name).resolve()
     try:
@@ -38,7 +38,7 @@ def said(test: str, root: Path) -> Said:
 
 
 def _calls(tree: ast.AST, test: set[str] | None) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the method calls in a tree; given `test`, skip tests whose function or class it does not name."""
+    """Yield the method calls in a tree; if `test` is given, skip tests whose function or class is not in it."""
     for node in ast.iter_child_nodes(tree):
         named = node.name if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)) else ""
         if test is not None and named.lower().startswith("test") and named not in test:
@@ -53,7 +53,7 @@ def _names(word: ast.keyword) -> list[str]:
 
 
 def _keys(value: ast.expr) -> list[str] | None:
-    """Return the keys of a dictionary literal; None if any key is not a constant."""
+    """Return the keys of a dictionary literal; None if a key is not a constant."""
     if not isinstance(value, ast.Dict):
         return None
     keys = [one.value for one in value.keys if isinstance(one, ast.Constant) and isinstance(one.value, str)]

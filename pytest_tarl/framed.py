@@ -1,6 +1,6 @@
-"""Records of an append-only file: each has a length and a checksum, by which readers recognise incomplete records.
+"""Records of an append-only file; length and checksum let readers recognise incomplete records.
 
-A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes.
+A record is `length, crc32` (two little-endian 32-bit numbers), followed by that many bytes.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import zlib
 from typing import BinaryIO
 
 _HEAD = struct.Struct("<II")
-HEAD = _HEAD.size  # number of bytes before the payload of a record
+HEAD = _HEAD.size  # bytes before a record's payload
 unpack_head = _HEAD.unpack_from  # (buffer, offset) → length and checksum of the payload
 
 
@@ -20,7 +20,7 @@ def framed(payload: bytes) -> bytes:
 
 
 def next_payload(file: BinaryIO, largest: int) -> bytes | None:
-    """Read a record and return its payload, or None if it is incomplete, damaged or longer than `largest` bytes."""
+    """Read a record's payload; return None if it is incomplete, damaged or longer than `largest` bytes."""
     head = file.read(HEAD)
     if len(head) < HEAD:
         return None

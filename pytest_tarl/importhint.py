@@ -7,7 +7,7 @@ from pytest_tarl.ros.standins import STANDINS
 
 
 def package_hint(error: BaseException | None) -> str | None:
-    """Return advice if a test was not collected because its package's `__init__.py` imports ROS, else None."""
+    """Return advice if a test was not collected because its package's `__init__.py` imports ROS, or None."""
     if import_hint(error) is None:
         return None
     return (
@@ -17,7 +17,7 @@ def package_hint(error: BaseException | None) -> str | None:
 
 
 def import_hint(error: BaseException | None) -> str | None:
-    """Return advice for an import that failed during collection; None for any other error."""
+    """Return advice on an import that failed during collection; None for other errors."""
     while error is not None:
         advice = _of_module(error.name) if isinstance(error, ModuleNotFoundError) and error.name else None
         if advice is not None:
@@ -27,7 +27,7 @@ def import_hint(error: BaseException | None) -> str | None:
 
 
 def _of_module(name: str) -> str | None:
-    """Return advice for a module of ROS; None for any other module."""
+    """Return advice on a module of ROS; None for other modules."""
     package = name.partition(".")[0]
     if package in STANDINS:
         return (

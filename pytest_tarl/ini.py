@@ -1,4 +1,4 @@
-"""The flags of TARL as ini options: `--tarl-alpha=0.01` is `tarl_alpha = 0.01`. The command line takes precedence."""
+"""TARL's flags as ini options: `--tarl-alpha=0.01` is `tarl_alpha = 0.01`. The command line takes precedence."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SWITCHES = {
     "0": False,
 }
 MODES = ("record", "online", "repair", "stress")
-# option → modes that use it; in other modes, its ini value is ignored
+# option → modes that use it; other modes ignore its ini value
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online", "stress"),
     "resume": ("record", "online", "stress"),
@@ -60,7 +60,7 @@ def mode_asked(config: pytest.Config) -> bool:
 
 
 def value_of(config: pytest.Config, key: str) -> Any:
-    """Return a flag's value from the command line, the ini file, or its default. Raise SettingsError if invalid."""
+    """Return a flag's value: from the command line, the ini file, or its default. Raise SettingsError if invalid."""
     flag = next(flag for flag in FLAGS if flag.key == key)
     typed = config.getoption(flag.name)
     if typed not in (None, False):
@@ -70,7 +70,7 @@ def value_of(config: pytest.Config, key: str) -> Any:
 
 
 def values(config: pytest.Config) -> tuple[dict[str, Any], list[Flag]]:
-    """Return the value of every flag by its key, and the keys of the flags that the ini file sets.
+    """Return key → value for all flags, and the flags that the ini file sets.
 
     Raise SettingsError for an invalid value.
     """
@@ -86,7 +86,7 @@ def _from_ini(config: pytest.Config, flag: Flag) -> Any:
     name = ini_name(flag)
     try:
         text = config.getini(name)
-    except (TypeError, ValueError) as error:  # the TOML value has another type
+    except (TypeError, ValueError) as error:  # the TOML value is of another type
         raise SettingsError(f"{config.inipath}: {name}: {error}") from None
     if text is None or text == []:
         return None
@@ -105,5 +105,5 @@ def _from_ini(config: pytest.Config, flag: Flag) -> Any:
 
 
 def _resolved(config: pytest.Config, flag: Flag, value: Any) -> Any:
-    """Resolve a path in an ini file relative to the folder of that file."""
+    """Resolve a path in an ini file relative to the file's folder."""
     return str(config.rootpath / value) if flag.metavar == "FILE" else value

@@ -1,4 +1,4 @@
-"""The episode of a pytest item: its plan, the fixtures `tarl` and `tarl_drift` inside it, and its outcome.
+"""The episode of a pytest item: its plan, its fixtures `tarl` and `tarl_drift`, and its outcome.
 
 In a plain run of the test, the item is one episode; `repeating.py` runs an item as many episodes.
 """
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Instruments:
-    """The sites (statements to record) in the nodes: their positions by file, and the numbers of those that publish."""
+    """The nodes' sites (statements to record): positions by file, and the numbers of those that publish."""
 
     positions: Mapping[Path, Positions] = field(default_factory=dict)
     publishes: frozenset[int] = frozenset()
@@ -46,7 +46,7 @@ NOTHING = Instruments()
 
 @dataclass
 class Episode:
-    """An episode of an item: its plan, and its outcome once it has run."""
+    """An episode of an item: its plan and, after it has run, its outcome."""
 
     plan: EpisodePlan
     designation: Designation
@@ -59,8 +59,8 @@ class Episode:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
-    older: tuple[Path, ...] = ()  # files of the overlay whose old text ran in the episode
-    simulator: bool = False  # whether an external simulator was the episode's world
+    older: tuple[Path, ...] = ()  # files of the overlay whose old text was run
+    simulator: bool = False  # whether the world was an external simulator
     outputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
     silent: str = ""  # which sensor or node was silent in the whole episode
@@ -70,7 +70,7 @@ EPISODE = pytest.StashKey[Episode]()
 
 
 def designated(item: pytest.Item) -> Designation | None:
-    """Return the item's checked marker, or None if it has none. Raise SettingsError if the marker is invalid."""
+    """Return the item's checked marker; None if it has none. Raise SettingsError if the marker is invalid."""
     marker = item.get_closest_marker("tarl")
     if marker is None:
         return None
@@ -80,13 +80,13 @@ def designated(item: pytest.Item) -> Designation | None:
 
 
 def _first_paragraph(docstring: str | None) -> str:
-    """Return the first paragraph of a docstring in one line; empty if there is no docstring."""
+    """Return a docstring's first paragraph on one line; empty without a docstring."""
     return " ".join((docstring or "").strip().partition("\n\n")[0].split())
 
 
 @contextmanager
 def opened(item: pytest.Item) -> Iterator[Tarl]:
-    """Open the item's episode and yield the fixture; on exit, close the episode and keep its trace."""
+    """Open the item's episode and yield the fixture; on exit, close the episode and store its trace."""
     from pytest_tarl.episode import Tarl
     from pytest_tarl.instrumentation.datafiles import is_data, reading
     from pytest_tarl.instrumentation.importhook import NodeImports
@@ -141,7 +141,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
 
 
 def _launch_files_replaced(data: Mapping[Path, str]) -> AbstractContextManager[None]:
-    """Return a context in which launch and parameter files are read anew if the overlay replaces data files."""
+    """Return a context that reads launch and parameter files again if the overlay replaces data files."""
     if not data:
         return nullcontext()
     from pytest_tarl.ros.launched import texts_replaced
@@ -150,7 +150,7 @@ def _launch_files_replaced(data: Mapping[Path, str]) -> AbstractContextManager[N
 
 
 def _faults(episode: Episode) -> Faults:
-    """Return all faults that the test declares, and the active ones of this episode."""
+    """Return all faults declared by the test, and those active in this episode."""
     from pytest_tarl import design
     from pytest_tarl.faults.installing import Faults
 
@@ -177,7 +177,7 @@ def _replay(episode: Episode) -> Replay | None:
 
 
 def drift_value(item: pytest.Item) -> Any:
-    """Return the value of the drift scenario in the item's episode; with no scenario, the design's value or None."""
+    """Return the drift value in the item's episode; without a scenario, the design's value or None."""
     from pytest_tarl import design
 
     episode = _episode(item)
@@ -187,7 +187,7 @@ def drift_value(item: pytest.Item) -> Any:
 
 
 def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:
-    """Keep the error that ended a phase; show user-facing errors in the report without their traceback."""
+    """Store the error that ended a phase; show user-facing errors in the report without a traceback."""
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
     if isinstance(error, (TarlError, RequirementError)) and report.failed:
@@ -197,7 +197,7 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
 
 
 def add_notes(item: pytest.Item, report: pytest.TestReport) -> None:
-    """Add to the report of a failed plain run how its nodes were started; other runs show this in their summary."""
+    """Add how nodes were started to the report of a failed plain run; other runs show it in their summary."""
     episode = getattr(item, "funcargs", {}).get("tarl")
     if episode is not None and EPISODE not in item.stash and report.failed and report.when == "call":
         notes = [f"note: {one}" for one in dict.fromkeys(episode.starting_notes)]
@@ -217,7 +217,7 @@ def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.Exceptio
 
 
 def _episode(item: pytest.Item) -> Episode:
-    """Return the episode that was prepared for the item; in a plain test run, create one."""
+    """Return the episode prepared for the item; in a plain test run, create one."""
     if EPISODE in item.stash:
         return item.stash[EPISODE]
     marked = designated(item)

@@ -1,4 +1,4 @@
-"""Write the files of a comparison (result, sample, page), and report those that cannot be written."""
+"""Write the files of a comparison (result, sample, page), and report those that could not be written."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.report import json_result
 
 @dataclass(frozen=True)
 class Kept:
-    """The path of the page if it was written, and lines about missing packages and files that were not written."""
+    """The page's path if it was written, and lines about missing packages and files that were not written."""
 
     page: Path | None
     missing: tuple[str, ...]
@@ -25,7 +25,7 @@ class Kept:
 
 
 def keep(comparison: Comparison, online: Online, episodes: Mapping[str, int], root: Path, name: str) -> Kept:
-    """Write all files of a comparison below `root`; report a write error as a line, so the verdict is kept."""
+    """Write a comparison's files below `root`; write errors become lines, so that the verdict is not lost."""
     folder = root / ".tarl"
     result, recording, page = (
         folder / where / f"{name}{ending}"
@@ -66,7 +66,7 @@ def _problem(write: Callable[[], None]) -> TarlError | None:
 
 
 def by_hand(repair: Repair | None) -> list[str]:
-    """Return the lines of an accepted patch that could not be written to a file; otherwise, an empty list."""
+    """Return the lines of an accepted patch that could not be written to a file; otherwise an empty list."""
     if repair is None or not repair.accepted or repair.patch:
         return []
     told = (
@@ -77,7 +77,7 @@ def by_hand(repair: Repair | None) -> list[str]:
 
 
 def as_fixture(comparison: Comparison, online: Online) -> Fixture:
-    """Return the sample of the deployed world in the format of a recording, so that `tarl show` can read it."""
+    """Return the deployed world's sample in the format of a recording, for `tarl show`."""
     return Fixture(
         test=comparison.test,
         seed=comparison.seed,

@@ -1,4 +1,4 @@
-"""`--tarl-log FILE`: compare logged missions of a robot with the recording of a test."""
+"""`--tarl-log FILE`: compare a robot's logged missions with the recording of a test."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _COLUMNS = {"site": "int32", "flow": "float64", "cell": "int32", "step": "int32"
 
 @dataclass
 class Mission:
-    """A mission of a log, stored as chunks of consecutive steps; `time` is its start in seconds since 1970."""
+    """A logged mission, as chunks of consecutive steps; `time` is its start in seconds since 1970."""
 
     sites: Sequence[str]
     time: float = 0.0
@@ -43,7 +43,7 @@ class Mission:
 def missions(path: Path, fixture: Fixture) -> list[Mission]:
     """Read all missions, including unfinished ones, from a log and its rotated files.
 
-    Raise LogError if the log does not belong to the recording.
+    Raise LogError if the log does not fit the recording.
     """
     found: list[Mission] = []
     sites: Sequence[str] = ()
@@ -64,7 +64,7 @@ def missions(path: Path, fixture: Fixture) -> list[Mission]:
 
 
 class LoggedMissions:
-    """A rollout that returns logged missions: episode n is the n-th finished mission of the log."""
+    """A rollout that returns logged missions: episode n is the log's n-th finished mission."""
 
     def __init__(
         self,
@@ -80,7 +80,7 @@ class LoggedMissions:
         self._judged = judged
         self.count = len(whole)
         self.workers = 1
-        self.notes = notes  # notes that name the skipped missions
+        self.notes = notes  # names the skipped missions
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Return the mission whose index is the plan's seed."""
@@ -106,7 +106,7 @@ def read_log(
     judge: Judge | None,
     requirements: Requirements = NOTHING_REQUIRED,
 ) -> LoggedMissions:
-    """Return the finished missions of a log as episodes. Raise LogError if the missions cannot be compared."""
+    """Return a log's finished missions as episodes. Raise LogError if they cannot be compared."""
     everything = missions(path, fixture)
     whole = [one for one in everything if one.ended and any(chunk["step_cell"] for chunk in one.chunks)]
     if len(whole) < FEWEST:
@@ -132,7 +132,7 @@ def trace(
     judge: Judge | None,
     by_formulas: Sequence[float] | None = None,
 ) -> Trace:
-    """Join the chunks of a mission into a trace; leave out events of sites that the node no longer contains."""
+    """Join a mission's chunks into a trace, without events of sites that the node no longer has."""
     here = np.array([number.get(site, -1) for site in mission.sites] or [-1], np.int32)
     cells = tuple(tuple(cell) for cell in mission.chunks[-1]["cells"])
     parts: list[dict[str, Any]] = []

@@ -1,4 +1,4 @@
-"""Count the episodes whose external simulator was lost, and say why."""
+"""Count the episodes whose external simulator was lost, and report why."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
 
 
 class LostSimulators:
-    """The number of episodes that ran in one test, and the reasons why some of them had to run again."""
+    """How many episodes of a test have run, and why some of them had to run again."""
 
     def __init__(self) -> None:
         self._episodes: list[tuple[str, ...]] = []
 
     def watched(self, rollout_with: RolloutWith) -> RolloutWith:
-        """Return a function that makes the same rollouts as `rollout_with`, but counts their episodes."""
+        """Return a function that makes the same rollouts as `rollout_with`, and counts their episodes."""
         return lambda instruments, sensors: _Watched(rollout_with(instruments, sensors), self.count)
 
     def count(self, run: EpisodeRun) -> None:
@@ -30,7 +30,7 @@ class LostSimulators:
         self._episodes.append(run.lost)
 
     def notes(self) -> tuple[str, ...]:
-        """Return a note if simulators were lost, with the most frequent reasons first; else nothing."""
+        """Return a note if simulators were lost, with the most frequent reasons first; otherwise nothing."""
         lost = [reasons for reasons in self._episodes if reasons]
         if not lost:
             return ()
@@ -48,7 +48,7 @@ class LostSimulators:
 
 @dataclass(frozen=True)
 class _Watched:
-    """A rollout that passes the result of each episode to `seen`."""
+    """A rollout that passes each episode's result to `seen`."""
 
     rollout: Rollout
     seen: Callable[[EpisodeRun], None]

@@ -50,7 +50,7 @@ IGNORED = (
 
 @dataclass(frozen=True)
 class Other:
-    """Another designated test of the run, which is a test with the marker `tarl`."""
+    """Another designated test of the run, that is, one with the marker `tarl`."""
 
     test: str
     folder: Path
@@ -71,13 +71,13 @@ class Mission:
     drift: str | None
     width: int
     progress: Progress
-    tell: Tell  # prints a sentence immediately on a terminal
+    tell: Tell  # prints a sentence at once on a terminal
     others: tuple[Other, ...] = ()
-    stage: Stage | None = None  # the part of the comparison to run in this call, under --tarl-total
-    node: str = ""  # pytest's node id, with the scenario
+    stage: Stage | None = None  # with --tarl-total, the stage of the comparison that this call runs
+    node: str = ""  # pytest's node id, including the scenario
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
-        """Run the mode and return its report; a comparison returns a Compared instead, whose `told` makes the report.
+        """Run the mode and return its report; a comparison is returned as Compared, whose `told` makes the report.
 
         Raise TarlError if the test cannot be recorded or compared.
         """
@@ -111,7 +111,7 @@ class Mission:
 
     @property
     def target(self) -> str:
-        """Return the pytest argument that selects this test, relative to the folder where pytest was started."""
+        """Return the pytest argument for this test, relative to the folder in which pytest was started."""
         return self._from_start(self.test)
 
     def _from_start(self, node: str) -> str:
@@ -120,11 +120,11 @@ class Mission:
 
     @property
     def tarl(self) -> Path:
-        """Return the folder below which everything is written."""
+        """Return the folder for all files that TARL writes."""
         return self.root / ".tarl"
 
     def interrupted(self, done: int, total: int, kept: str) -> str:
-        """Return a line about an interrupted run and its recording; `kept` is a sentence about the kept episodes."""
+        """Return a line about an interrupted run and its recording; `kept` is a sentence on the kept episodes."""
         if self.options.mode != "record":
             return f"Interrupted in episode {done + 1} of {total}. {kept}".rstrip()
         path = self.fixture_path
@@ -135,7 +135,7 @@ class Mission:
         return analysed(self.designation, self.folder, self.root)
 
     def _sensors(self, rollout_with: RolloutWith, fixture: Fixture | None) -> tuple[Sensor, ...]:
-        """Return the sensors with their bins, which come from the recording or are learned from separate episodes."""
+        """Return the sensors with their bins, from the recording or learned from separate episodes."""
         asked = self.designation.sensors
         if fixture is not None:
             return with_edges(asked, {one.name: one.edges for one in fixture.sensors if one.learned})
@@ -162,7 +162,7 @@ class Mission:
         return name
 
     def _silent(self, analysis: Analysis) -> Iterator[str]:
-        """Yield a note for each node file without any recorded statement."""
+        """Yield a note for each node file without a recorded statement."""
         files = [(self.folder / node).resolve() for node in self.designation.nodes]
         return silent_files(files, analysis, self.root.resolve(), passed_with_imports)
 
@@ -195,7 +195,7 @@ class Mission:
 
     @property
     def _designations(self) -> dict[str, Designation]:
-        """Return the markers of the other tests of the run, by test."""
+        """Return the markers of the run's other tests, by test."""
         return {other.test: other.designation for other in self.others}
 
     def _test_side(self) -> Digests:
@@ -283,7 +283,7 @@ class Mission:
         return Account((*found.lines, *told.lines, *unwritten), found.problem, told.patch, told.interrupted)
 
     def _neighbours(self) -> list[Neighbour]:
-        """Return the other tests of the run that have a readable recording."""
+        """Return the run's other tests that have a readable recording."""
         found = []
         for other in self.others:
             with suppress(FixtureError):
@@ -312,7 +312,7 @@ class Mission:
 
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
-        # if the folder is not writable, the error is reported when the other files are written
+        # an unwritable folder is reported when the other files are written
         with suppress(OSError, UnicodeDecodeError):
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode(), parents=True)
@@ -324,4 +324,4 @@ def _changeable(analysis: Analysis) -> set[str]:
 
 
 class NoFixtureError(FixtureError):
-    """The test has no recording: it is skipped, or fails under `--tarl-strict`."""
+    """The test has no recording: it is skipped or, with `--tarl-strict`, fails."""

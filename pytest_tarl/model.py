@@ -1,4 +1,4 @@
-"""The values passed between the stages of the plugin, as frozen dataclasses; this module needs no pytest or numpy."""
+"""The values passed between the plugin's stages, as frozen dataclasses; this module needs no pytest or numpy."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Reason = Literal[
 
 @dataclass(frozen=True, slots=True)
 class SitePlace:
-    """A site, which is a statement to record: `id` is `str(tarl_lint.model.SiteId)`; lines count from 1."""
+    """A site, which is a statement to record; `id` is `str(tarl_lint.model.SiteId)`, and lines count from 1."""
 
     id: str
     path: str
@@ -55,7 +55,7 @@ class SitePlace:
 
 @dataclass(frozen=True, slots=True)
 class TaintList:
-    """The sites between one source and one sink topic, in order; a site's index is its *n* in the paper."""
+    """The sites between a source and a sink topic, in order; a site's index is its *n* in the paper."""
 
     source: str
     sink: str
@@ -63,19 +63,19 @@ class TaintList:
 
     @property
     def name(self) -> str:
-        """Return the displayed name of the list, such as `/odom → /cmd_vel`."""
+        """Return the list's name as displayed, such as `/odom → /cmd_vel`."""
         return f"{_end(self.source)} → {_end(self.sink)}"
 
 
 def _end(topic: str) -> str:
-    """Return a topic; an unknown topic is named by the place of its call, `(call at path:line)`."""
+    """Return a topic; an unknown one is named after its call, `(call at path:line)`."""
     call, separator, place = topic.removesuffix(")").partition(" at ")
     return f"unknown topic at {place.rpartition('/')[2]}" if separator and call.startswith("(") else topic
 
 
 @dataclass(frozen=True, slots=True)
 class Conjunct:
-    """One condition of a guard: `low <= sensor <= high`. Both ends may be infinite; equal ends select one category."""
+    """A condition of a guard: `low <= sensor <= high`. Ends may be infinite; equal ends select one category."""
 
     sensor: Sensor
     low: float
@@ -84,7 +84,7 @@ class Conjunct:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """The condition under which a mutation applies: at most two conditions joined by `and`; always true if empty."""
+    """The condition for a mutation: up to two conditions joined by `and`; without any, always true."""
 
     conjuncts: tuple[Conjunct, ...] = ()
 
@@ -93,10 +93,11 @@ class Guard:
 class Region:
     """The cells in which the worlds differ.
 
-    Deployed episodes visited `cells`, which are recorded, and `novel`, which the recording lacks.
+    Deployed episodes visited `cells`, which are in the recording, and `novel`, which are not. They avoid the recorded
+    cells in `left`.
 
-    `left` holds recorded cells that deployed episodes avoid. If all deployed cells are new, the comparison ignores some
-    sensors, so that deployed cells match recorded ones; `without` holds the indices of these sensors.
+    If all deployed cells are new, the comparison ignores some sensors, so that deployed cells match recorded ones;
+    `without` has the indices of these sensors.
     """
 
     cells: tuple[Cell, ...] = ()
@@ -109,7 +110,7 @@ class Region:
 class Bound:
     """A lower and an upper bound, each at the stated confidence; infinite if there are too few episodes.
 
-    `exact` is true if the bounds have this coverage for every distribution (learning/bounds.py).
+    `exact` means that the confidence holds for every distribution (learning/bounds.py).
     """
 
     low: float
@@ -122,11 +123,12 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Guarantee:
-    """Bounds for future episodes of a world, given `passed` successes in `episodes` episodes. Each holds on its own.
+    """Bounds for future episodes of a world, given `passed` successes in `episodes` episodes.
 
-    At least 1 - `share` of the future episodes earn `quantile` or more. `quantile` is None if there are fewer than
-    `needed` episodes, or if their number depended on their results; `needed` is 0 in that case. `varied` is false if
-    all episodes are equal; such episodes show only a single world.
+    The confidence is that of each single bound. At least 1 - `share` of the future episodes earn `quantile` or more.
+    `quantile` is None if there are fewer than `needed` episodes. It is also None if the number of episodes depended on
+    their results; `needed` is then 0. `varied` is false if all episodes are equal, because they then show only a single
+    world.
     """
 
     episodes: int
@@ -138,11 +140,11 @@ class Guarantee:
     quantile: float | None
     needed: int
     varied: bool
-    declared: tuple[float, float] | None = None  # the marker's bounds on every total, if given
+    declared: tuple[float, float] | None = None  # the marker's limits for every total, if given
 
 
 class LossInterval(NamedTuple):
-    """Confidence interval of the loss per episode; its ends are infinite if there are too few episodes."""
+    """Confidence interval of the loss per episode; infinite if there are too few episodes."""
 
     low: float
     high: float
@@ -152,10 +154,10 @@ class LossInterval(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The verdict of a comparison. `loss` and `detectable_loss` are rewards per episode.
+    """The verdict of a comparison; `loss` and `detectable_loss` are rewards per episode.
 
-    `success` holds the share of successful missions in the recording and in the deployed world, and `p_failures` the
-    p-value of its decrease. `because` says what is worse if the result is "degraded".
+    `success` has the success rates in the recording and in the deployed world, and `p_failures` is the p-value of its
+    decrease. `because` says what is worse if the result is "degraded".
     """
 
     result: Result
@@ -171,18 +173,18 @@ class Verdict:
 
     @property
     def p_worse(self) -> float:
-        """Return the p-value of the hypothesis that the deployed world is no worse, in reward and in success."""
+        """Return the p-value for the deployed world being no worse, in reward and in success."""
         return min(self.p_loss, self.p_failures)
 
     @property
     def failures_only(self) -> bool:
-        """Return whether more missions fail although no loss of reward was found."""
+        """Return whether more missions fail, although no loss of reward was found."""
         return self.because == ("success",)
 
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """Eq. 2 at one site: utility summed over the region, in the designed and in the deployed world."""
+    """Eq. 2 at a site: its utility summed over the region, in the designed and in the deployed world."""
 
     site: SitePlace
     list_name: str
@@ -197,19 +199,19 @@ class Slice:
 
 @dataclass(frozen=True, slots=True)
 class OperandEffect:
-    """The simulated effect of one operand: its best value and the reward it gains per episode."""
+    """The simulated effect of an operand: its best value, and the reward gained per episode."""
 
     code: str
     value: float | None
     best: float
     effect: float
-    factor: bool = False  # whether `best` is a factor for the operand, instead of its new value
-    what: str = ""  # description, if the operand follows a sensor or a variable; `best` is then the exponent
+    factor: bool = False  # whether `best` is a factor for the operand instead of its new value
+    what: str = ""  # description if the operand follows a sensor or a variable; `best` is then the exponent
 
 
 @dataclass(frozen=True, slots=True)
 class Culprit:
-    """A ranked site. `method` is `slices` if no operand of the site was changed in simulation."""
+    """A ranked site. `method` is `slices` if none of its operands was changed in simulation."""
 
     site: SitePlace
     score: float
@@ -219,19 +221,19 @@ class Culprit:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One repaired operand. Where the guard holds, `value` replaces it or, if `factor` is true, multiplies it."""
+    """A repaired operand. While the guard holds, `value` replaces it or, with `factor`, multiplies it."""
 
     path: str
     line: int
     code: str
     value: float
     factor: bool = False
-    what: str = ""  # description, if the edit changes the structure instead of an operand
+    what: str = ""  # description if the edit changes the structure instead of an operand
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A promising candidate and its outcome; `reason` says why it was rejected, and is empty if it was accepted.
+    """A promising candidate and its outcome; `reason` says why it was rejected, and is empty if it was not.
 
     `mean` is its mean reward in `episodes` episodes. `fresh` is true if these episodes were not used to choose it.
     """
@@ -245,7 +247,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but was not accepted. `gain` is the reward per episode that the change gains on fresh seeds.
+    """A helpful change that was not accepted. `gain` is the reward that it gains per episode, on fresh seeds.
 
     `low` and `designed_low` are lower bounds of the gain in the two worlds; `patch` is a path below the root.
     """
@@ -263,9 +265,9 @@ class Partial:
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """The result of the search. `guard` is the Python condition in the patch; `diff` is empty if none was accepted.
+    """The result of a repair search. `guard` is the patch's Python condition; `diff` is empty without a repair.
 
-    `mean` is the mean reward of the rejected candidate in `episodes` episodes; `history` lists the attempts in order.
+    `mean` is the rejected candidate's mean reward in `episodes` episodes; `history` lists the attempts in order.
     """
 
     accepted: bool
@@ -282,20 +284,20 @@ class Repair:
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """An interval of a drift's range. `part` is the key of the range in a dictionary of drifts, or ""."""
+    """An interval of a drift's range. `part` is the key of the range in a dictionary of drifts, or empty."""
 
     part: str
     low: float
     high: float
 
     def __str__(self) -> str:
-        """Return the text to display, such as `mud 0.1 to 0.27`."""
+        """Return the displayed text, such as `mud 0.1 to 0.27`."""
         return f"{self.part or 'sizes'} {self.low:.3g} to {self.high:.3g}"
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """A drift's range, and the numbers drawn from it in each world: one per episode, in the order of the totals."""
+    """A drift's range, and the numbers drawn from it in each world, one per episode as in the totals."""
 
     part: str
     low: float
@@ -313,7 +315,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class SearchTrace:
-    """Learning curve of a search: `totals[i]` is the total reward of its i-th episode, `labels[i]` its candidate."""
+    """Learning curve of a search: `totals[i]` is the reward of its i-th episode, `labels[i]` the candidate."""
 
     method: str
     totals: tuple[float, ...]
@@ -322,7 +324,7 @@ class SearchTrace:
 
 @dataclass(frozen=True)
 class ListComparison:
-    """One taint list in both worlds. Matrices have shape (cells, sites), with NaN in the rows of unvisited cells."""
+    """A taint list in both worlds. Matrices have shape (cells, sites), with NaN for unvisited cells."""
 
     taint_list: TaintList
     offline: Matrix
@@ -332,9 +334,9 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: its mean and least robustness, and the numbers of judged and violated episodes.
+    """A formula in one world: mean and lowest robustness, and numbers of judged and violated episodes.
 
-    `first` is the time of the earliest violation in s, from the start of its episode.
+    `first` is when the earliest violation occurred, in s from the start of its episode.
     """
 
     robustness: float
@@ -370,22 +372,22 @@ class Comparison:
     searches: tuple[SearchTrace, ...] = ()
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
-    ranking: str = ""  # sentence about how certain the ranking of the culprits is
+    ranking: str = ""  # sentence on how certain the ranking of the culprits is
     parts: Mapping[str, tuple[float, float]] = field(
         default_factory=dict
-    )  # part of the reward → its means in the designed and in the deployed world
+    )  # part of the reward → its means in the designed and the deployed world
     lost: Mapping[str, tuple[Cell, ...]] = field(
         default_factory=dict
     )  # part of the reward → cells where it is lower in the deployed world
     target: str = ""  # the pytest argument that records this test
-    # the pytest argument that selects this comparison, if the test has parameters besides the drift
+    # the pytest argument for this comparison, if the test has parameters other than the drift
     node: str = ""
     flags: tuple[str, ...] = ()  # non-default options of the run
-    changes: Mapping[Cell, float] = field(default_factory=dict)  # cell → difference between worlds
+    changes: Mapping[Cell, float] = field(default_factory=dict)  # cell → difference between the worlds
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`
     formulas: tuple[FormulaRow, ...] = ()
     sizes: Mapping[str, Sizes] = field(
         default_factory=dict
-    )  # for each key in a dictionary of drifts: the sizes drawn from the range
+    )  # key in a dictionary of drifts → sizes drawn from its range
     purpose: str = ""  # purpose and reward of the test: the first paragraph of its docstring
     permanent: bool = False  # whether the world has changed for good

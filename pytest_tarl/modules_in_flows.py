@@ -1,4 +1,4 @@
-"""Find the project modules that files import, and the modules whose names are used by statements of flows."""
+"""Find the project modules that files import, and the modules whose names are used in flows."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ INIT: Final = "__init__.py"
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """A statement of a flow that uses a name from a module: the module's file, and the place of the statement."""
+    """A flow's statement that uses a name from a module: the module's file, and where the statement is."""
 
     file: Path
     path: str
@@ -25,7 +25,7 @@ class Use:
 
 
 def uses(analysis: Analysis, root: Path) -> Iterator[Use]:
-    """Yield the first use of each imported name; `root` is the folder to which paths of the analysis are relative."""
+    """Yield the first use of each imported name; the paths of the analysis are relative to `root`."""
     for shown, text in analysis.sources.items():
         for name, file in _imports(ast.parse(text), (root / shown).resolve(), root.resolve()):
             word = re.compile(rf"\b{re.escape(name)}\b")
@@ -36,9 +36,9 @@ def uses(analysis: Analysis, root: Path) -> Iterator[Use]:
 
 
 def imported(files: Sequence[Path], root: Path, *, packages: bool = False) -> tuple[Path, ...]:
-    """Return the project's files that these files import, directly or not, in the order in which they are found.
+    """Return the project files that these files import, directly or indirectly, in order of discovery.
 
-    With `packages`, return and follow only the files `__init__.py`. Files that are not valid Python are skipped.
+    With `packages`, return and follow only `__init__.py` files. Files that are not valid Python are skipped.
     """
     found = dict.fromkeys(files)
     waiting = list(files)
@@ -57,9 +57,9 @@ def imported(files: Sequence[Path], root: Path, *, packages: bool = False) -> tu
 
 
 def _imports(tree: ast.Module, at: Path, root: Path, *, packages: bool = False) -> Iterator[tuple[str, Path]]:
-    """Yield each name that a module imports from files of the project, and the file.
+    """Yield each name that a module imports from project files, with the file.
 
-    With `packages`, also yield the `__init__.py` of a package.
+    With `packages`, also yield a package's `__init__.py`.
     """
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -77,7 +77,7 @@ def _imports(tree: ast.Module, at: Path, root: Path, *, packages: bool = False) 
 
 
 def _files(module: str, level: int, at: Path, root: Path, packages: bool) -> list[Path]:
-    """Return the files of a module, next to the importing file or in a parent folder up to the root."""
+    """Return the files of a module, beside the importing file or in a parent folder up to the root."""
     starts = [at.parents[level - 1]] if level else [each for each in at.parents if each.is_relative_to(root)]
     parts = module.split(".")
     wanted = [start.joinpath(*parts).with_suffix(".py") for start in starts if module]

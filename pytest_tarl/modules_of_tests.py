@@ -1,7 +1,7 @@
-"""Detect changes in a test's modules: its file, the modules it imports from below the root, and conftest files.
+"""Detect changes in a test's modules: its file, modules that it imports from below the root, and conftest files.
 
-The simulated world, the reward and the helpers of a test affect a recording as much as the node does. Each definition
-has a hash that ignores comments, layout and docstrings. Marker arguments, other tests and data files are not hashed.
+A test's simulated world, reward and helpers affect a recording as much as the node does. Each definition has a hash
+that ignores comments, layout and docstrings. Marker arguments, other tests and data files are not hashed.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import hashlib
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-DIGITS = 12  # number of hexadecimal digits of a hash
+DIGITS = 12  # hexadecimal digits of a hash
 SHOWN = 3  # maximum number of files in a message, and of definitions per file
-REST = ""  # key of the hash of all statements outside definitions
+REST = ""  # key for the hash of all statements outside definitions
 
-Digests = Mapping[str, Mapping[str, str]]  # file, relative to the root → definition → hash
+Digests = Mapping[str, Mapping[str, str]]  # file (relative to the root) → definition → hash
 
 
 def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[str, str]]:
-    """Return the hashes for a test, given its node ID. Skip files that cannot be read or parsed."""
+    """Return the hashes for a test, given by node ID. Skip files that cannot be read or parsed."""
     name, *parts = test.partition("[")[0].split("::")
     found: dict[str, dict[str, str]] = {}
     first = (root / name).resolve()
@@ -30,7 +30,7 @@ def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[st
 
 
 def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[tuple[Path, ast.Module]]:
-    """Yield a test's file, the modules that it imports from below the root, and its conftest files, with their trees.
+    """Yield a test's file, the modules that it imports from below the root, and its conftest files, with trees.
 
     Skip the files in `nodes` and files that cannot be read or parsed.
     """
@@ -50,7 +50,7 @@ def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[t
 
 
 def changes(before: Digests, after: Digests) -> Iterator[str]:
-    """Yield the changes of each file; nothing if the recording is of an older version, without hashes."""
+    """Yield the changes of each file; nothing for an older recording without hashes."""
     if not before:
         return
     for path in sorted({*before, *after}):
@@ -68,7 +68,7 @@ def changes(before: Digests, after: Digests) -> Iterator[str]:
 
 
 def remark(before: Digests, after: Digests) -> Iterator[str]:
-    """Yield a sentence about the changes since the recording, if there are any."""
+    """Yield a sentence on the changes since the recording, if there are any."""
     found = list(changes(before, after))
     if found:
         more = f" and {len(found) - SHOWN} more files" if len(found) > SHOWN else ""
@@ -84,7 +84,7 @@ def _conftests(folder: Path, root: Path) -> list[Path]:
 
 
 def _imported(tree: ast.Module, path: Path, root: Path) -> list[Path]:
-    """Return the files that the imports of a module may refer to; some of them may not exist."""
+    """Return the files that a module's imports may refer to; some may not exist."""
     package = path.parent
     while (package / "__init__.py").exists() and package != root:
         package = package.parent
@@ -112,7 +112,7 @@ def _files(base: Path, module: str) -> Iterator[Path]:
 
 
 def _definitions(tree: ast.Module, test: Collection[str] | None) -> dict[str, str]:
-    """Return the hash of every definition. In the test's own file, `test` holds its function and class names."""
+    """Return the hash of every definition. For the test's own file, `test` has its function and class names."""
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             node.decorator_list = [one for one in node.decorator_list if not _marks(one)]
@@ -133,7 +133,7 @@ def _definitions(tree: ast.Module, test: Collection[str] | None) -> dict[str, st
 
 
 def _named(statement: ast.stmt) -> Iterator[tuple[str, str]]:
-    """Yield each definition in a statement with its source text; methods are definitions of their own."""
+    """Yield each definition in a statement, with its source; methods count as separate definitions."""
     if isinstance(statement, (ast.Import, ast.ImportFrom)) or (
         isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
     ):

@@ -1,4 +1,4 @@
-"""The checked options of a run, as a frozen dataclass; this module does not import pytest."""
+"""A run's options after checking, as a frozen dataclass; this module does not import pytest."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _NOT_SHARED = {
     "holm": "Holm's method needs smaller p-values than those at which a comparison may end early",
     "log": "the number of recorded missions is fixed",
     "bag": "the number of recorded missions is fixed",
-}  # flags that contradict --tarl-total, with the reason
+}  # flags that contradict --tarl-total → reason
 
 
 @dataclass(frozen=True)
 class Options:
-    """The options of one run of pytest."""
+    """The options of a pytest run."""
 
     mode: Mode = "plain"
     seed: int = 0
@@ -41,25 +41,25 @@ class Options:
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
     localize: str = "repair"  # what ends the search: an accepted repair, or a ranking of all sites
-    budget: int = 300  # limit of a search, in episodes
+    budget: int = 300  # limit of a search in episodes
     seconds: float | None = None  # limit of a search in seconds, instead of episodes
     edit: str = "auto"  # where to write an unconditional repair of a named constant
     structure: bool = True  # whether a search may also change the structure of the code
     strict: bool = False
     utility: str = "batch"
-    workers: int = 1  # number of parallel episodes; if there are several, each runs in its own process
+    workers: int = 1  # number of parallel episodes; if more than one, each runs in its own process
     cluster: str | None = None  # address of a Dask scheduler
     ros: str = "embedded"
-    looks: int | None = None  # maximum number of interim looks at the verdict
-    log: Path | None = None  # log of a robot's missions to compare
+    looks: int | None = None  # maximum number of looks at the verdict
+    log: Path | None = None  # log with a robot's missions to compare
     holm: bool = False  # whether to correct verdicts over all tests of the run
-    comparisons: int = 1  # number of comparisons for which to correct
+    comparisons: int = 1  # number of comparisons to correct for
     bags: tuple[Path, ...] = ()  # recorded missions to compare
-    stress_budget: int = 1000  # limit of a stress run, in episodes
+    stress_budget: int = 1000  # limit of a stress run in episodes
     stress_seconds: float | None = None  # limit of a stress run in seconds, instead of episodes
-    # whether a stress run also searches for a repair at the nearest drift that was confirmed to fail
+    # whether a stress run also searches for a repair at the nearest drift confirmed to fail
     stress_repair: bool = False
-    total: int | None = None  # number of episodes that all comparisons of the run share
+    total: int | None = None  # number of episodes shared by all comparisons of the run
     resume: bool = False  # whether to reuse the finished episodes of an interrupted run
 
     ONLINE_EPISODES = 40
@@ -69,14 +69,13 @@ class Options:
     def most_looks(self) -> int:
         """Return the maximum number of looks at the verdict.
 
-        There is only one look if a repair follows, because finding the region needs all episodes. With --tarl-holm,
-        there is only one look, too, because the correction needs smaller p-values than those at which a run may stop
-        early.
+        There is only one look if a repair follows, because finding the region takes all episodes. The same applies to
+        --tarl-holm, because its correction needs smaller p-values than those at which a run may stop early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 
     def alone(self, episodes: int) -> Options:
-        """Return the options with which one comparison can be run separately, with `episodes` episodes."""
+        """Return the options for running one comparison separately with `episodes` episodes."""
         return replace(self, total=None, looks=None, episodes=episodes)
 
     @property
@@ -106,11 +105,11 @@ class Options:
 
 
 def options(given: Mapping[str, Any]) -> Options:
-    """Check the flags of a run. Raise SettingsError for an invalid flag."""
+    """Check the flags of a run. Raise SettingsError if one is invalid."""
     _check_modes(given)
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:
-        if not re.fullmatch(r"[\w.]+:\w+", name):  # a user's own search, which is imported later
+        if not re.fullmatch(r"[\w.]+:\w+", name):  # a user's own search, imported later
             _known("--tarl-search", name, (*SEARCHES, "module:factory"))
     localize = given["localize"] or "repair"
     _known("--tarl-localize", localize, RANKINGS)
@@ -175,7 +174,7 @@ def _check_total(given: Mapping[str, Any]) -> None:
 
 
 def _check_modes(given: Mapping[str, Any]) -> None:
-    """Raise SettingsError for flags that conflict or need another flag."""
+    """Raise SettingsError for flags that conflict, or need another flag."""
     if given["stress"]:
         _check_stress(given)
     elif not (given["record"] or given["online"] or given["repair"]):
@@ -228,7 +227,7 @@ def _check_stress(given: Mapping[str, Any]) -> None:
 
 
 def _budget(text: str, flag: str = "--tarl-budget", least: int = 1) -> tuple[int, float | None]:
-    """Parse the limit of a search, such as `300`, `90s`, `5min` or `1h`, into (episodes, seconds)."""
+    """Parse a search's limit, such as `300`, `90s`, `5min` or `1h`, into (episodes, seconds)."""
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min|h)?", text.strip())
     unit = found[2] if found else None
     if found is None or float(found[1]) <= 0 or (unit is None and not found[1].isdecimal()):
@@ -241,7 +240,7 @@ def _budget(text: str, flag: str = "--tarl-budget", least: int = 1) -> tuple[int
 
 
 def _workers(text: str) -> int:
-    """Return the number of parallel episodes; for `auto`, the cores are shared with the workers of pytest-xdist."""
+    """Return the number of parallel episodes; for `auto`, workers of pytest-xdist share the cores."""
     if text != "auto":
         return int(
             number_within("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024)
@@ -302,7 +301,7 @@ def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
 def number_within(
     where: str, name: str, value: Any, kind: type[int] | type[float], low: float, high: float
 ) -> Any:
-    """Return the value if it is a number of type `kind` within the bounds. Raise SettingsError otherwise."""
+    """Return the value if it is a number of type `kind` within the limits. Raise SettingsError otherwise."""
     takes = int if kind is int else (int, float)
     if isinstance(value, bool) or not isinstance(value, takes) or not low <= value <= high:
         within = (

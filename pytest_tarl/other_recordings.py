@@ -1,4 +1,4 @@
-"""Notes on recordings of other tests that run the same node, and on the drifts of the design."""
+"""Notes on recordings of other tests that run the same node, and on drifts of the design."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from pytest_tarl.model import Repair
 
 
 def adopted(run: Mapping[str, Designation], tarl: Path, recording: Path, sites: Plan) -> Iterator[str]:
-    """Yield lines that name the new design, and the other tests of the node that still use the old design.
+    """Yield lines that name the new design, and the node's other tests that still use the old one.
 
-    `run` holds the other tests of this run, `tarl` is the folder `.tarl`, and `recording` is the new recording.
+    `run` has the other tests of this run, `tarl` is the folder `.tarl`, and `recording` is the new recording.
     """
     new = fixtures.load(recording)
     design = new.design
@@ -27,7 +27,7 @@ def adopted(run: Mapping[str, Designation], tarl: Path, recording: Path, sites: 
     named = " and ".join(repr(name) for name in design)
     yield f"  the design now includes the drift {named}: runs without flags get it as tarl_drift, too"
     nodes = {place.path for place in sites.places}
-    # the tests that this run records under the same drift
+    # tests that this run records under the same drift
     recorded = {test for test, other in run.items() if {*design} <= other.drifts.keys()}
     for path in sorted((tarl / "utility").glob("*.npz")):
         with suppress(FixtureError):
@@ -52,9 +52,9 @@ def lost_design(designation: Designation, fixture: Fixture, drift: str | None) -
 
 
 def unchecked(found: Repair | None, run: Collection[str], tarl: Path) -> Iterator[str]:
-    """Yield a note for each recorded test that runs a repaired file, but on which this run did not check the repair.
+    """Yield a note for each recorded test that runs a repaired file and was not used to check the repair.
 
-    `run` names the tests of this run, and `tarl` is the folder `.tarl`.
+    `run` has the names of this run's tests, and `tarl` is the folder `.tarl`.
     """
     if found is None or not found.accepted:
         return

@@ -1,7 +1,7 @@
 """Sums over the messages that nodes publish, which show whether a change alters what a node does.
 
 A change may alter every command of a failing mission without changing its reward or length. If the sums are equal, the
-node most likely behaved the same.
+node very likely behaved the same.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pytest_tarl.instrumentation.magnitude import magnitude
 
 
 class Outputs:
-    """Sum the sizes of all messages by topic, and sum them again weighted by index, to detect another order.
+    """Sum the sizes of all messages by topic, and again weighted by index, to detect another order.
 
     The third number is the largest size.
     """

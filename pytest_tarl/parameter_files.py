@@ -1,4 +1,4 @@
-"""The `parameters` of `tarl.start` and `tarl.launch`: a mapping, or the path of a YAML file with parameters."""
+"""The argument `parameters` of `tarl.start` and `tarl.launch`: a mapping, or the path of a YAML file."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Parameters = Mapping[str, Any] | str | os.PathLike[str]
 
 
 def parameters_of(given: Parameters | None, folder: Path, function: str) -> Mapping[str, Any]:
-    """Return the parameters that a test passes to a function; a path is relative to the test's folder.
+    """Return the parameters that a test passes to a function; paths are relative to the test's folder.
 
-    Raise SettingsError for any other type, or if the file cannot be read as a mapping.
+    Raise SettingsError for other types, and if the file cannot be read as a mapping.
     """
     if given is None:
         return {}

@@ -1,4 +1,4 @@
-"""The pytest hooks of TARL: options, marker and fixtures. Runs with TARL's flags are in session.py."""
+"""TARL's pytest hooks: options, marker and fixtures. session.py handles runs with TARL's flags."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Generator[None]:
-    """Suggest a flag for a misspelt one, once all plugins and conftest files have declared their flags.
+    """Suggest a flag for a misspelt one, once all plugins and conftest files have declared theirs.
 
     Raise pytest.UsageError with the suggestion.
     """
@@ -46,9 +46,9 @@ def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Gen
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker, and the session object if a mode is selected.
+    """Register the marker and, if a mode is selected, the session object.
 
-    Raise pytest.UsageError if a mode is selected and the extra `pytest` is not installed.
+    Raise pytest.UsageError if a mode is selected, but the extra `pytest` is not installed.
     """
     config.addinivalue_line("markers", MARKER)
     held_interpreter.prepare()
@@ -63,7 +63,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.fixture
 def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
-    """The interface of a test to its episode: random numbers, ROS, sensors and reward."""
+    """Give a test access to its episode: random numbers, ROS, sensors and reward."""
     _require_extra("The fixture `tarl`")
     from pytest_tarl.item_episode import opened
 
@@ -73,7 +73,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
-    """The drift value of this episode: the value of the scenario or, without one, that of the design; else None."""
+    """Return the drift value of this episode: the scenario's or, without one, the design's; otherwise None."""
     _require_extra("The fixture `tarl_drift`")
     from pytest_tarl.item_episode import drift_value
 
@@ -82,7 +82,7 @@ def tarl_drift(request: pytest.FixtureRequest) -> Any:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
-    """Evaluate the formulas of an episode after its body."""
+    """Evaluate an episode's formulas after its body."""
     episode: Any = pyfuncitem.funcargs.get("tarl")
     if episode is None or pyfuncitem.get_closest_marker("tarl") is None:
         return (yield)
@@ -99,7 +99,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Keep the error of an episode, and show user-facing errors without their traceback."""
+    """Store an episode's error, and show user-facing errors without a traceback."""
     report = yield
     if (
         call.excinfo is not None
@@ -125,7 +125,7 @@ def pytest_runtest_makereport(
 def pytest_make_collect_report(
     collector: pytest.Collector,
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Show user-facing errors without traceback; add advice if the ROS that a test module imports is missing."""
+    """Show user-facing errors without a traceback; add advice if a test module imports a missing ROS."""
     report = yield
     call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
     if call is not None and call.excinfo is not None and _ours(call.excinfo.value):
@@ -152,7 +152,7 @@ def _ours(error: BaseException) -> bool:
 
 
 def _at_line(excinfo: pytest.ExceptionInfo[BaseException], root: Path) -> str:
-    """Return the text of a TARL error, preceded by file and line of the innermost call in the user's code."""
+    """Return a TARL error's text, preceded by file and line of the innermost call in the user's code."""
     ours = Path(__file__).parent
     lines = [entry for entry in excinfo.traceback if ours not in Path(entry.path).parents]
     if not lines:
@@ -185,7 +185,7 @@ def _options(config: pytest.Config) -> Options:
 
 
 def _look_for_plugged(config: pytest.Config, options: Options) -> None:
-    """Import a user's searches before any episode runs. Raise SettingsError if a search cannot be found."""
+    """Import a user's searches before any episode runs. Raise SettingsError if one cannot be found."""
     named = [name for name in options.searches if ":" in name and options.mode == "repair"]
     if named:
         from pytest_tarl.searching.ask_tell import factory

@@ -18,7 +18,7 @@ def printable(text: str) -> str:
 
 
 def printable_line(text: str) -> str:
-    """Escape a string including its line breaks, so that a name cannot forge lines of output."""
+    """Escape a string including its line breaks, so that a name cannot fake lines of output."""
     return printable(text).replace("\n", "\\n")
 
 

@@ -1,4 +1,4 @@
-"""The processors of this machine."""
+"""Count the processors of this machine."""
 
 from __future__ import annotations
 

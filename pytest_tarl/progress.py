@@ -1,6 +1,6 @@
-"""Show progress on a terminal: episodes done, their rate, and the time left.
+"""Show progress on a terminal: finished episodes, their rate, and the time left.
 
-The line appears immediately and changes at most ten times per second. The clock affects only the display.
+The line appears immediately and changes at most ten times per second. The clock affects only what is displayed.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
 
-INTERVAL = 0.1  # time between two updates (s)
-SETTLED = 0.5  # time until the rate is stable enough to be shown (s)
+INTERVAL = 0.1  # seconds between two updates
+SETTLED = 0.5  # seconds until the rate is stable enough to be shown
 
 
 @dataclass
@@ -23,11 +23,11 @@ class ProgressLine:
     done: int = 0
     total: int = 0
     _phase: str = ""
-    _begun: tuple[float, int] = field(default=(0.0, 0))  # start of the phase, and episodes finished by then
+    _begun: tuple[float, int] = field(default=(0.0, 0))  # start of the phase, and episodes finished before it
     _shown: float = 0.0
 
     def __call__(self, done: int, total: int, phase: str) -> None:
-        """Show the number of finished episodes of a phase."""
+        """Show how many episodes of a phase have finished."""
         now = self.clock()
         fresh = phase != self._phase or done < self.done
         if fresh:

@@ -14,7 +14,7 @@ from pytest_tarl.spaces import Choice, Space, Span, nominal
 def must_hold(where: str, value: Any, drifts: Mapping[str, Drift]) -> Mapping[str, tuple[Any, ...]]:
     """Return the limits by direction: two numbers for a range, options for a choice.
 
-    Raise SettingsError for a direction that no space has, or for limits that do not fit the direction.
+    Raise SettingsError if no space has the direction, or the limits do not fit it.
     """
     if not isinstance(value, Mapping):
         raise SettingsError(

@@ -1,4 +1,4 @@
-"""`--tarl-record`: run the test in its designed world and record the utility of its software."""
+"""`--tarl-record`: run the test in its designed world, and record the utility of its software."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ Progress = Callable[[int, int, str], None]
 Tell = Callable[[str], None]
 Members = Sequence[Sequence[int]]
 
-PILOTS = 20  # number of episodes from which bins are learned
+PILOTS = 20  # number of episodes for learning bins
 
 SILENT = 5  # it is an error if a sensor or node is silent in each of this many first episodes
-FEW = 30  # if fewer episodes are recorded, a note states the detectable loss
+FEW = 30  # below this number of episodes, a note gives the detectable loss
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
     "wall clock, or comparisons will report spurious differences."
@@ -53,9 +53,9 @@ NOT_REPRODUCIBLE = (
 
 @dataclass(frozen=True)
 class Recorded:
-    """The episodes of one world: the first one's trace, the statistics of all, and message types by sensor topic.
+    """The episodes of a world: the first trace, the statistics of all, and message types by sensor topic.
 
-    `sarsa` holds one learner per taint list, updated in the order of the seeds; `learner` names the learning rule.
+    `sarsa` has a learner per taint list, updated in the order of the seeds; `learner` names the learning rule.
     """
 
     first: Trace
@@ -66,7 +66,7 @@ class Recorded:
     learner: str = "sarsa"
     notes: tuple[str, ...] = ()
     simulator: bool = False  # whether the world was an external simulator
-    # the numbers that nodes got as parameters in the first episode, by absolute name
+    # numbers that nodes got as parameters in the first episode, by absolute name
     parameters: Mapping[str, bool | int | float] = field(default_factory=dict)
 
     @property
@@ -77,7 +77,7 @@ class Recorded:
 
 @dataclass(frozen=True)
 class RecordResult:
-    """The result of `--tarl-record`; nothing was written if `problem` is not empty."""
+    """The result of `--tarl-record`; if `problem` is not empty, nothing was written."""
 
     line: str
     problem: str = ""
@@ -97,10 +97,10 @@ def record(
     drift: str | None = None,
     world: Digests | None = None,
 ) -> RecordResult:
-    """Run the episodes and write the recording. Write nothing if too many episodes fail.
+    """Run the episodes and write the recording, unless too many episodes fail.
 
-    `world` holds the hashes of the test's modules. A `drift`, which must be permanent, becomes part of the design. If
-    the previous recording cannot be read, report this first. Raise FixtureError before the first episode if the file
+    `world` has the hashes of the test's modules. A `drift`, which must be permanent, becomes part of the design. If the
+    previous recording cannot be read, this is reported first. Raise FixtureError before the first episode if the file
     cannot be written.
     """
     old, broken = _previous(path)
@@ -141,7 +141,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; if the result differs, return a note, which gives both rewards for a simulator."""
+    """Repeat the first episode; if the result differs, return a note (with both rewards for a simulator)."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []
@@ -159,9 +159,9 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
 
 
 def detectable(totals: Floats) -> list[str]:
-    """Return a note about the loss that a comparison can detect, if there are fewer than FEW episodes.
+    """Return a note on the loss that a comparison can detect, if there are fewer than FEW episodes.
 
-    `totals` holds the reward of each episode, shape (episodes,).
+    `totals` has the reward of each episode, shape (episodes,).
     """
     if totals.size >= FEW:
         return []
@@ -173,7 +173,7 @@ def detectable(totals: Floats) -> list[str]:
                 "Record at least 4."
             )
         ]
-    if not np.ptp(totals):  # all totals are equal, so that a comparison shows even the smallest loss
+    if not np.ptp(totals):  # all totals are equal, so a comparison shows even the smallest loss
         return []
     note = (
         f"{totals.size} episodes: a comparison with the same number shows a loss of {amount(loss)} per episode in "
@@ -183,7 +183,7 @@ def detectable(totals: Floats) -> list[str]:
 
 
 def _refused(settling: Settling, recorded: Recorded) -> str:
-    """Return why the recording must not be written; empty if it may be."""
+    """Return why the recording must not be written, or an empty text."""
     if settling.failing:
         return _unfinished(settling.failing, recorded.failures, recorded.sample.episodes)
     unjudged = never_judged(recorded.sample.judgements)
@@ -193,7 +193,7 @@ def _refused(settling: Settling, recorded: Recorded) -> str:
 def read_values(
     rollout: Rollout, seed: int, progress: Progress, drift: str | None = None
 ) -> dict[str, list[float]]:
-    """Run PILOTS separate episodes; return the values of the sensors whose bins are to be learned, by sensor name."""
+    """Run PILOTS separate episodes; return the values of the sensors whose bins are learned, by sensor name."""
     read: dict[str, list[float]] = {}
     plans = [EpisodePlan(each, drift) for each in episode_seeds(seed, "bins", PILOTS)]
     silent = Silent()
@@ -216,7 +216,7 @@ def run_episodes(
     enough: Callable[[Sequence[Sample]], bool] | None = None,
     footprint: Footprint | None = None,
 ) -> Recorded:
-    """Run one instrumented episode per seed, until `enough` returns true.
+    """Run an instrumented episode per seed, until `enough` returns true.
 
     Raises:
         RecordingError: the test itself is broken, the node never waits, a sensor or the node is silent in all missions,
@@ -262,7 +262,7 @@ def run_episodes(
 
 @dataclass
 class Silent:
-    """Missions in which a sensor or the node was silent. If all missions are silent, this is an error, else a note."""
+    """Missions in which a sensor or the node was silent: an error if these are all missions, otherwise a note."""
 
     episodes: int = 0
     found: list[str] = field(default_factory=list)
@@ -280,7 +280,7 @@ class Silent:
             raise RecordingError(self.found[0])
 
     def notes(self) -> list[str]:
-        """Return a note for each kind of silence; these missions count like all others."""
+        """Return a note for each kind of silence; silent missions count like all others."""
         return [
             f"in {self.found.count(told)} of {self.episodes} missions, which count like the others: {told}"
             for told in dict.fromkeys(self.found)
@@ -297,7 +297,7 @@ def sound(run: EpisodeRun) -> EpisodeRun:
 
 
 def sarsa_tables(recorded: Recorded, scales: Sequence[float]) -> tuple[Floats, ...]:
-    """Return the learned table of each taint list, shape (cells, sites); `scales` holds each list's mean flow F."""
+    """Return the learned table of each taint list, shape (cells, sites); `scales` has each list's mean flow F."""
     cells = recorded.sample.cells
     return tuple(one.table(cells, scale) for one, scale in zip(recorded.sarsa, scales, strict=True))
 
@@ -339,7 +339,7 @@ def _unjudged(formula: str, recorded: Sample) -> str:
 
 
 def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
-    """Return a note for every taint list of which no site was reached."""
+    """Return a note for every taint list without a reached site."""
     silent = [
         number
         for number, one in enumerate(recorded.lists)
@@ -358,9 +358,9 @@ def _silent(name: str, *, forwarded: bool) -> str:
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return the previous recording (or None), and the reason if it exists but cannot be read.
+    """Return the previous recording or None, and why it cannot be read if it exists.
 
-    There is no reason for a folder at this path: `check_writable` refuses it, because it cannot be replaced.
+    A folder at this path gives no reason: `check_writable` rejects it, because it cannot be replaced.
     """
     if path.is_dir():
         return None, ()

@@ -1,4 +1,4 @@
-"""Remarks that accompany a verdict: on lost sites, new situations, and failures that do not lower the reward."""
+"""Remarks that accompany a verdict: lost sites, new situations, and failures that do not lower the reward."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, Verdict
 from pytest_tarl.sensors import Sensor
 
-MOST_NAMED = 3  # maximum number of sites that a note names as lost
+MOST_NAMED = 3  # maximum number of lost sites to name in a note
 
 
 def of_comparison(
     fixture: Fixture, plan: Plan, offline: Sample, online: Sample, difference: Difference
 ) -> tuple[str, ...]:
-    """Return the remarks on a comparison except `failing`, which comes first; both samples must have the same cells."""
+    """Return the remarks on a comparison except `failing`, which comes first; both samples have the same cells."""
     return (
         *unheard_of(offline, online, difference, fixture.sensors),
         *lost_sites(fixture, plan),
@@ -28,7 +28,7 @@ def of_comparison(
 
 
 def early(online: Sample, planned: int) -> tuple[str, ...]:
-    """Return a remark if the run stopped early, because the verdict was certain."""
+    """Return a remark if the run stopped early because the verdict was certain."""
     if online.episodes == planned:
         return ()
     return (
@@ -37,7 +37,7 @@ def early(online: Sample, planned: int) -> tuple[str, ...]:
 
 
 def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Return a remark on recorded sites that the node no longer has; the slices of all other sites are compared."""
+    """Return a remark on recorded sites that the node no longer has; all others are still compared."""
     present = {place.id for place in plan.places}
     gone: dict[str, SitePlace] = {}
     for one in fixture.lists:
@@ -56,7 +56,7 @@ def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
 
 
 def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Describe recorded sites that moved to another line; their slices are still compared."""
+    """Describe recorded sites that moved to another line, and are still compared."""
     now = {place.id: place for place in plan.places}
     moved = {
         f"`{site.code}` from line {site.line} to {now[site.id].line}": None
@@ -72,7 +72,7 @@ def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
 
 
 def failing(verdict: Verdict) -> tuple[str, ...]:
-    """Return a remark if more missions fail in the deployed world although no loss of reward was found."""
+    """Return a remark if more missions fail in the deployed world, although no loss of reward was found."""
     if not verdict.failures_only:
         return ()
     return (
@@ -86,7 +86,7 @@ def failing(verdict: Verdict) -> tuple[str, ...]:
 def unheard_of(
     offline: Sample, online: Sample, difference: Difference, sensors: Sequence[Sensor]
 ) -> Iterator[str]:
-    """Yield a remark if nearly all deployed situations are new; the remark states what was compared instead."""
+    """Yield a remark if nearly all deployed situations are new; it says what was compared instead."""
     if difference.verdict.result == "no difference" or not apart(offline, online):
         return
     names = [sensors[d].name for d in difference.region.without]
@@ -104,7 +104,7 @@ def unheard_of(
 
 
 def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
-    """Return remarks on formulas that the recording lacks, and on formulas for which every mission was too short."""
+    """Return remarks on formulas missing from the recording, and on those that every mission was too short for."""
     if online.judgements is None:
         return ()
     recorded = offline.judgements.formulas if offline.judgements is not None else ()

@@ -1,8 +1,8 @@
 """Run the body of a test repeatedly; each run is an episode with fresh function-scoped fixtures.
 
-An episode is pytest's own run of an item: setup, call and teardown, each with its report. There are two differences.
-The reports are not logged, and only function-scoped fixtures are torn down, so fixtures of wider scope live until the
-item is finished.
+An episode is pytest's own run of an item: setup, call and teardown, each with a report. It differs in two ways: the
+reports are not logged, and only function-scoped fixtures are torn down. Fixtures of wider scope live until the item is
+finished.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pytest_tarl.item_episode import EPISODE, NOTHING, Episode, Instruments
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 
 LIMIT = pytest.StashKey[Any]()  # pytest-timeout's settings for an item
-SIMULATORS = 3  # maximum number of runs of an episode whose simulator is lost
+SIMULATORS = 3  # maximum number of runs of an episode if its simulator is lost
 INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # exceptions that end the whole run
 
 
@@ -42,9 +42,9 @@ class ItemRollout:
         return Deferred(self, plan)
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode. If its simulator is lost, run it again, at most SIMULATORS times in total.
+        """Run an episode; if its simulator is lost, run it again, up to SIMULATORS times in total.
 
-        Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C.
+        Raise TarlError if the test cannot run as planned, and pytest's Exit on Ctrl-C.
         """
         lost: list[str] = []
         while isinstance(run := self._tried(plan), SimulatorLostError):
@@ -54,7 +54,7 @@ class ItemRollout:
         return replace(run, lost=tuple(lost))
 
     def _tried(self, plan: EpisodePlan) -> EpisodeRun | SimulatorLostError:
-        """Run one episode once; return the error if its simulator is lost."""
+        """Run an episode once; return the error if its simulator is lost."""
         try:
             return self._once(plan)
         except SimulatorLostError as problem:
@@ -66,7 +66,7 @@ class ItemRollout:
         self.item._report_sections.clear()  # otherwise the captured output of all episodes would accumulate
         _forget_instance(self.item)
         try:
-            # pass the item's own parent as next item: this keeps all fixtures of wider scope
+            # passing the item's own parent as next item keeps all fixtures of wider scope
             with _heeding_interrupts(), _limited(self.item):
                 reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
         finally:
@@ -75,7 +75,7 @@ class ItemRollout:
 
 
 def _given_up(problem: SimulatorLostError, plan: EpisodePlan, lost: Sequence[str]) -> str:
-    """Return the message about an episode whose simulator was lost in every run."""
+    """Return the message for an episode that lost its simulator in every run."""
     earlier = "; ".join(dict.fromkeys(lost[:-1]))
     return (
         f"{problem} TARL ran the episode with seed {plan.seed} {len(lost)} times, each time with a new simulator, and "
@@ -92,7 +92,7 @@ def _forget_instance(item: pytest.Function) -> None:
 
 @dataclass(frozen=True)
 class BesideRollout(ItemRollout):
-    """Run episodes of another item while an item runs; fixtures that the two items do not share are set up anew."""
+    """Run episodes of another item while an item runs; fixtures that they do not share are set up again."""
 
     at_work: pytest.Function
 
@@ -107,9 +107,9 @@ class BesideRollout(ItemRollout):
 
 
 def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
-    """Apply the limit of pytest-timeout to each episode instead of the whole item.
+    """Apply pytest-timeout's limit to each episode instead of to the whole item.
 
-    Return None if an episode is running, so that pytest-timeout sets its timer.
+    While an episode is running, return None, so that pytest-timeout sets its timer.
     """
     if EPISODE in item.stash:
         return None
@@ -119,7 +119,7 @@ def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
 
 @contextmanager
 def _limited(item: pytest.Function) -> Iterator[None]:
-    """Apply the limit of pytest-timeout to one episode."""
+    """Apply pytest-timeout's limit to one episode."""
     settings = item.stash.get(LIMIT, None)
     if settings is None:
         yield
@@ -136,7 +136,7 @@ def _heeding_interrupts() -> Iterator[None]:
     """End the run on Ctrl-C even if a node catches KeyboardInterrupt, as many main functions do."""
     before = signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
-        yield  # leave the handler unchanged, since SIGINT is ignored here, as in a background job
+        yield  # SIGINT is ignored here, as in a background job, so leave the handler alone
         return
     seen = []
     passed_on = before
@@ -156,8 +156,8 @@ def _heeding_interrupts() -> Iterator[None]:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """After the last episode, tear down the fixtures that the next item does not need."""
-    # do not call pytest's hooks, because plugins expect one teardown per item, and the last episode has already called
-    # the teardown hooks, perhaps in another process
+    # do not call pytest's hooks: plugins expect one teardown per item, and the last episode has already called the
+    # teardown hooks, perhaps in another process
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS
@@ -198,25 +198,25 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         simulator=episode.simulator,
         outputs=episode.outputs,
         parameters=episode.parameters,
-        silent=episode.silent if ended else "",  # an error of the node explains the silence
+        silent=episode.silent if ended else "",  # if the node had an error, that explains the silence
     )
 
 
 def _timed_out(error: BaseException | None) -> bool:
-    """Return whether pytest-timeout ended the episode; it calls `pytest.fail`."""
+    """Return whether pytest-timeout ended the episode, which it does with `pytest.fail`."""
     return isinstance(error, pytest.fail.Exception) and str(error).startswith("Timeout (>")
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Return whether an xfail mark expected the failure of a mission; such a mission counts as failed."""
+    """Return whether an xfail mark expected the failure of a mission, which then counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 
 def _surprise(report: pytest.TestReport) -> bool:
-    """Return whether a mission failed only because of a strict xfail mark; the test itself raised no exception."""
+    """Return whether a mission failed only because of a strict xfail mark, without an exception."""
     return report.when == "call" and isinstance(report.longrepr, str) and report.longrepr.startswith("[XPASS")
 
 
 def _reason(report: pytest.TestReport) -> str:
-    """Return the reason that a skipped test gave."""
+    """Return the reason given by a skipped test."""
     return str(report.longrepr[2]) if isinstance(report.longrepr, tuple) else report.longreprtext

@@ -10,16 +10,16 @@ from typing import Any
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.sensors import as_number
 
-LARGEST = 1e100  # maximum magnitude of a reward; flow values have the same limit
+LARGEST = 1e100  # largest magnitude of a reward; flow values have the same limit
 
 
 def checked_reward(
     total: float | None, parts: Mapping[str, float], *, by_formulas: bool
 ) -> tuple[float, dict[str, float]]:
-    """Return the reward of a step and its named parts; without a total, the reward is the sum of the parts.
+    """Return the reward of a step and its named parts; without a total, it is the sum of the parts.
 
-    `by_formulas` states that the formulas give the rewards. Raise SettingsError if `by_formulas` is true, if there is
-    neither a total nor a part, or if a value is not a finite number.
+    `by_formulas` means that formulas give the rewards. Raise SettingsError in that case, and if there is neither a
+    total nor a part, or a value is not a finite number.
     """
     if total is None and not parts:
         raise SettingsError(

@@ -1,4 +1,4 @@
-"""The interface for running episodes: plans, their results, and rollouts, which run plans."""
+"""The interface for running episodes: plans, results, and rollouts, which run plans."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from typing import Protocol
 from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
-AHEAD = 2  # number of episodes per worker that are started before their results are requested
-# number of started but unrequested episodes that are kept per worker while other episodes are requested
+AHEAD = 2  # episodes per worker that are started before their results are requested
+# started episodes per worker that are kept, although other episodes are requested first
 KEPT = 6
 
 
 @dataclass(frozen=True)
 class EpisodePlan:
-    """One planned run of a test. `overlay` maps files to replacement texts; with `record`, nodes are instrumented.
+    """A planned run of a test. `overlay` maps files to replacement texts; with `record`, nodes are instrumented.
 
-    With `outputs`, the messages that the nodes publish are summed up. With `signed`, which needs `record`, the trace
-    holds numbers with their signs in place of flow values.
+    With `outputs`, the messages published by nodes are summed. With `signed`, which needs `record`, the trace has
+    numbers with their signs instead of flow values.
 
-    With a `bag`, the mission in the bag replaces the test's world. If `drift` is a space, `point` is a point of it;
-    without `point`, the seed determines a random one.
+    With a `bag`, its mission replaces the test's world. If `drift` is a space, `point` is a point of it; without
+    `point`, the seed determines a random one.
     """
 
     seed: int
@@ -41,26 +41,26 @@ class EpisodePlan:
 class EpisodeRun:
     """The result of an episode. `failure` says in one line why the test failed; `topics` maps topics to types.
 
-    `crashed` is true if the node ended the episode early; `stuck` is also true if it did so because it never waited.
-    `notes` are for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of
+    `crashed` is true if the node ended the episode early; `stuck` is also true if this was because it never waited.
+    `notes` are for the user. `values` has the values of sensors whose bins are learned. `judged` has the results of
     formulas.
 
-    `older` lists the files of the overlay whose old text ran in the episode. If there are any, the result says nothing
-    about the overlay.
+    `older` lists the files of the overlay whose old text was run. If there are any, the result says nothing about the
+    overlay.
 
-    `outputs` holds, for each topic, sums over the messages that the nodes published, if the plan asks for them and the
-    nodes run in this process.
+    `outputs` has sums over the messages published by nodes, by topic, if the plan asks for them and the nodes run in
+    this process.
 
-    `parameters` holds, by absolute name, the numbers that nodes in this process get as parameters from outside, such as
-    launch files or the test.
+    `parameters` has the numbers that nodes in this process got as parameters from outside (such as launch files or the
+    test), by absolute name.
 
-    `silent` says which sensor or node was silent in the whole episode, in a world without drift; it is an error only if
+    `silent` says which sensor or node was silent in the whole episode, in a world without drift. It is an error only if
     this is so in all missions.
 
-    `simulator` is true if an external simulator was the world; then the same plan may give another result.
+    `simulator` is true if an external simulator was the world. Repeating the same plan may then give another result.
 
-    If the simulator died or hung, the episode ran again; the result is that of the last run. `lost` holds a brief
-    reason for each run whose simulator was lost.
+    If the simulator died or hung, the episode was repeated; the result is that of the last run. `lost` has a brief
+    reason for each lost simulator.
 
     `broken` is the text of an error outside the mission, such as one in the test's own code.
     """
@@ -88,7 +88,7 @@ class Pending(Protocol):
     """A requested episode."""
 
     def result(self) -> EpisodeRun:
-        """Return the result, waiting for it. Raise TarlError if the episode could not run."""
+        """Wait for the result and return it. Raise TarlError if the episode could not run."""
 
     def cancel(self) -> bool:
         """Cancel the episode if it has not started; return whether it was cancelled."""
@@ -98,7 +98,7 @@ class Pending(Protocol):
 
 
 class Rollout(Protocol):
-    """Run episodes of one test, `workers` in parallel."""
+    """Run episodes of a test, `workers` of them in parallel."""
 
     @property
     def workers(self) -> int:
@@ -131,15 +131,15 @@ class Deferred:
         self._calls.append(call)
 
     def cancel(self) -> bool:
-        """Return True: the episode has not started and is not run."""
+        """Return True: the episode has not started and will not run."""
         return True
 
 
 def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending]:
     """Yield the episodes in the order of their plans; start enough of them early to keep all workers busy.
 
-    The result does not depend on the number of workers. A caller that stops early wastes only the
-    episodes already started.
+    The result does not depend on the number of workers. A caller that stops early wastes only the episodes that have
+    been started.
     """
     ahead = AHEAD * rollout.workers if rollout.workers > 1 else 0
     begun: deque[Pending] = deque()
@@ -158,25 +158,25 @@ def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending
 class Ahead:
     """Start the episodes that a search will probably request, so that workers stay busy while it evaluates a result.
 
-    Starting early only prefetches: a requested episode has the same result whether or not it was started
-    early, and an episode that is never requested only costs time. Keys identify episodes.
+    This is only prefetching: an episode has the same result whether or not it was started early, and one that is never
+    requested only takes time. Keys identify episodes.
     """
 
     def __init__(self, rollout: Rollout) -> None:
         self.rollout = rollout
         self._foreseen: Iterator[tuple[Hashable, EpisodePlan]] = iter(())
         self._begun: dict[Hashable, Pending] = {}
-        # keys of the episodes that were started since the last forecast and were not requested yet
+        # keys of the episodes started since the last forecast and not requested yet
         self._lately: set[Hashable] = set()
 
     def foresee(self, wanted: Iterable[tuple[Hashable, EpisodePlan]]) -> None:
-        """Set the new forecast: the episodes that will be requested next, in this order."""
+        """Set the new forecast: the episodes that will probably be requested next, in this order."""
         if self.rollout.workers > 1:
             self._foreseen, self._lately = iter(wanted), set()
             self._begin()
 
     def __call__(self, key: Hashable, plan: EpisodePlan) -> EpisodeRun:
-        """Run an episode, or wait for it if it has started. Raise TarlError if the episode cannot run."""
+        """Run an episode, or wait for it if it has started. Raise TarlError if it cannot run."""
         pending = self._begun.pop(key, None) or self.rollout.begin(plan)
         self._lately.discard(key)
         self._begin()

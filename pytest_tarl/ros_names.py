@@ -1,4 +1,4 @@
-"""The rules for names of topics, services and nodes, for both ROS generations. Characters are ASCII.
+"""The rules for names of topics, services and nodes in both ROS generations; characters are ASCII.
 
 ROS 1: wiki.ros.org/Names, rosgraph/names.py and rosmaster/validators.py. ROS 2: design.ros2.org, "Topic and Service
 name mapping to DDS", as checked by rcl_validate_topic_name and rmw_validate_*.
@@ -9,19 +9,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-Problem = tuple[str, int]  # (description of the problem, index of the wrong character)
+Problem = tuple[str, int]  # (description, index of the wrong character)
 
 _LEGAL_ROS1 = re.compile(r"[~/A-Za-z][A-Za-z0-9_/]*")
-# maximum length of the absolute name of a topic or service: DDS allows 255 characters, of which a prefix takes 8
+# maximum length of a topic's or service's absolute name: DDS allows 255 characters, of which a prefix takes 8
 _TOPIC_LENGTH = 247
 _NODE_LENGTH = 255
-_NAMESPACE_LENGTH = 245  # with this length, a slash and a topic of one character still fit into _TOPIC_LENGTH
+_NAMESPACE_LENGTH = 245  # leaves room for a slash and a topic of one character within _TOPIC_LENGTH
 
 
 def objection(name: object) -> str:
-    """Return why no node of either ROS can have a topic or service of that name, or an empty string.
+    """Return why no node in either ROS can have a topic or service of this name, or an empty text.
 
-    The sentence begins with "must". Names that rospy accepts with a warning, such as `/cam-1`, are accepted.
+    The text starts with "must". Names that rospy accepts with a warning, such as `/cam-1`, are accepted.
     """
     if not isinstance(name, str):
         return f"must be a text, not {name!r}"
@@ -36,17 +36,17 @@ def objection(name: object) -> str:
 
 
 def is_legal_ros1(name: str) -> bool:
-    """Return whether a name follows the rules of ROS 1; rospy warns about other names."""
+    """Return whether a name follows the rules of ROS 1; rospy warns about names that do not."""
     return bool(_LEGAL_ROS1.fullmatch(name)) and "//" not in name
 
 
 def is_refused_by_master(name: str) -> bool:
-    """Return whether the master of ROS 1 refuses to register a topic or service of that name."""
+    """Return whether the ROS 1 master rejects a topic or service of this name."""
     return " " in name or ":" in name
 
 
 def topic_problem(name: str) -> Problem | None:
-    """Return the problem that rcl finds in a name; it may be relative, and have `~` and substitutions like `{node}`."""
+    """Return what rcl finds wrong with a name, which may be relative or have `~` and `{node}` substitutions."""
     if not name:
         return "topic name must not be empty string", 0
     if name[0] in "0123456789":
@@ -61,7 +61,7 @@ def topic_problem(name: str) -> Problem | None:
 
 
 def full_topic_problem(name: str) -> Problem | None:
-    """Return the problem that rmw finds in the absolute name of a topic or service."""
+    """Return what rmw finds wrong with the absolute name of a topic or service."""
     return (
         _absolute_problem(name, "topic name", "topic name must not end with a '/'")
         or _numbered(name, "topic name must not have a token that starts with a number")
@@ -70,7 +70,7 @@ def full_topic_problem(name: str) -> Problem | None:
 
 
 def namespace_problem(name: str) -> Problem | None:
-    """Return the problem that rmw finds in the absolute name of a namespace."""
+    """Return what rmw finds wrong with the absolute name of a namespace."""
     if name == "/":
         return None
     return (
@@ -81,7 +81,7 @@ def namespace_problem(name: str) -> Problem | None:
 
 
 def node_problem(name: str) -> Problem | None:
-    """Return the problem that rmw finds in the name of a node."""
+    """Return what rmw finds wrong with the name of a node."""
     if not name:
         return "node name must not be empty", 0
     said = "node name must not contain characters other than alphanumerics or '_'"

@@ -16,14 +16,14 @@ from time import monotonic, sleep
 from pytest_tarl.errors import RecordingError
 
 _ATTEMPTS = 3
-_PATIENCE = 60.0  # maximum wall time until a master answers, on a busy machine (s)
+_PATIENCE = 60.0  # maximum real time until a master answers on a busy machine (s)
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 class Master:
     """A process `rosmaster --core`, and the environment in which nodes find it.
 
-    The master ends with `close` or with this process.
+    The master ends with `close`, or with this process.
     """
 
     def __init__(self) -> None:
@@ -129,6 +129,6 @@ _LIBC = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
 
 
 def _die_with_parent() -> None:
-    """Make the kernel end the master when pytest is killed. Called in the child before exec."""
+    """Make the kernel end the master if pytest is killed. Called in the child before exec."""
     if _LIBC is not None and hasattr(_LIBC, "prctl"):
         _LIBC.prctl(_DIE_WITH_PARENT, signal.SIGTERM)

@@ -1,4 +1,4 @@
-"""Read the names of drift scenarios and of their tests from pytest's node ids."""
+"""Read the names of drift scenarios, and of their tests, from pytest's node ids."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def scenario(item: pytest.Item) -> str | None:
 
 
 def without_drift(item: pytest.Item) -> str:
-    """Return the node id without its scenario, so that all scenarios of a test share its recording."""
+    """Return the node id without its scenario, because all scenarios of a test share its recording."""
     callspec = getattr(item, "callspec", None)
     if callspec is None or "tarl_drift" not in callspec.params:
         return item.nodeid

@@ -13,14 +13,14 @@ Shape = Literal["step", "ramp", "burst"]
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """The course of a drift that begins at the time `at` (s). `lasts` is the duration of a ramp or burst (s)."""
+    """The course of a drift that starts at time `at` (s); `lasts` is the duration (s) of a ramp or burst."""
 
     shape: Shape
     at: float
     lasts: float = 0.0
 
     def share(self, time: float) -> float:
-        """Return the share of the drift's size at a time in s: 0 is nominal, 1 the full size."""
+        """Return the share of the drift's full size at a time in s; 0 is nominal."""
         if time < self.at:
             return 0.0
         if self.shape == "ramp":
@@ -30,7 +30,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """The value of a drift over time. The test calls it with the time in s, such as `tarl.now`."""
+    """The value of a drift over time; the test calls it with the time in s, such as `tarl.now`."""
 
     nominal: float
     size: float
@@ -42,7 +42,7 @@ class Schedule:
 
 
 def profile(shape: Shape, at: Any, lasts: Any = 0.0) -> Profile:
-    """Return a checked profile. Raise SettingsError for an invalid moment or duration."""
+    """Return a checked profile. Raise SettingsError for an invalid time or duration."""
     begin, duration = finite_number(at), finite_number(lasts)
     if begin is None or begin < 0.0:
         raise SettingsError(f"Drift.{shape}: at must be a moment in seconds, 0 or later, got {at!r}.")

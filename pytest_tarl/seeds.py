@@ -1,4 +1,4 @@
-"""Random numbers. One seed determines all random streams; each stream has a name."""
+"""Random numbers: one seed determines all random streams, each of which has a name."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def episode_seed(seed: int, stream: str, index: int) -> int:
-    """Return the seed of episode `index` of a stream, below 2⁶³; two streams share a seed only by chance."""
+    """Return the seed (below 2⁶³) of a stream's episode `index`; streams share a seed only by chance."""
     return _hashed(f"{seed}/{stream}/{index}", 8) >> 1
 
 
@@ -20,14 +20,14 @@ def episode_seeds(seed: int, stream: str, count: int) -> tuple[int, ...]:
 
 
 def generator(seed: int, name: str) -> np.random.Generator:
-    """Return the Philox stream with the key (seed, name); it does not depend on other names or earlier draws."""
+    """Return the Philox stream with the key (seed, name), independent of other names and of earlier draws."""
     import numpy as np
 
     return np.random.Generator(np.random.Philox(key=_hashed(f"{seed}/{name}", 16)))
 
 
 def uniform(seed: int, name: str) -> float:
-    """Return a number from 0 to 1 determined by (seed, name), without numpy."""
+    """Return a number from 0 to 1, determined by (seed, name), without numpy."""
     return _hashed(f"{seed}/{name}", 8) / 2**64
 
 

@@ -17,9 +17,9 @@ from pytest_tarl.spaces import Space
 
 
 def with_space(marked: Sequence[pytest.Item]) -> list[pytest.Item]:
-    """Return the items with a drift space.
+    """Return the items that have a drift space.
 
-    Raise UsageError if no item has one, or if a needed package is missing.
+    Raise UsageError if there are none, or if a required package is missing.
     """
     sentence = missing_stress("--tarl-stress")
     if sentence is not None:
@@ -36,8 +36,9 @@ def with_space(marked: Sequence[pytest.Item]) -> list[pytest.Item]:
 def chosen(item: pytest.Item, options: Options) -> bool:
     """Return whether `--tarl-drift` selects an item.
 
-    For a recording, this is every item whose marker declares the drift. For a comparison, it is every item of that
-    scenario. Items that declare the drift but lack the fixture `tarl_drift` are also selected; their reports say so.
+    For a recording, it selects every item whose marker declares the drift; for a comparison, every item of that
+    scenario. Items that declare the drift but do not use the fixture `tarl_drift` are also selected; their reports say
+    so.
     """
     declared = options.drift in _drift_names(item)
     if options.mode == "record":
@@ -46,7 +47,7 @@ def chosen(item: pytest.Item, options: Options) -> bool:
 
 
 def check_drift(marked: Sequence[pytest.Item], options: Options) -> None:
-    """Raise UsageError if no test declares the drift of `--tarl-drift`."""
+    """Raise UsageError if no test declares the drift in `--tarl-drift`."""
     known = sorted({name for item in marked for name in _drift_names(item)})
     backwards = options.mode == "record" and options.drift == AS_WRITTEN
     if marked and options.drift not in known and not backwards:
@@ -66,16 +67,16 @@ def _drift_names(item: pytest.Item) -> list[str]:
 
 
 def is_space(drift: object) -> bool:
-    """Return whether a drift of a marker is a space of drifts."""
+    """Return whether a marker's drift is a space."""
     return isinstance(getattr(drift, "value", None), Space)
 
 
 def _has_space(item: pytest.Item) -> bool:
-    """Return whether an item's scenario is a space, or its marker declares one and the item lacks the fixture."""
+    """Return whether an item's scenario is a space, or its marker declares one that the item does not use."""
     marker = item.get_closest_marker("tarl")
     drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
     if not isinstance(drifts, Mapping):
-        return True  # if the marker is invalid, running the test reports it
+        return True  # running the test will report that the marker is invalid
     if takes(item, "tarl_drift"):
         return is_space(drifts.get(scenario(item)))
     return any(map(is_space, drifts.values()))
@@ -87,7 +88,7 @@ def takes(item: pytest.Item, fixture: str) -> bool:
 
 
 def how_to_take(item: pytest.Function) -> str:
-    """Describe how a test requests the fixture; methods of unittest.TestCase cannot have fixture arguments."""
+    """Describe how a test requests the fixture: methods of unittest.TestCase cannot have it as an argument."""
     if item.cls is None or not issubclass(item.cls, TestCase):
         return "take it as an argument"
     return (

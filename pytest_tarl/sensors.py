@@ -17,25 +17,29 @@ from pytest_tarl.field_paths import dotted, field_value
 from pytest_tarl.ros_names import objection
 from pytest_tarl.variables import prefixes
 
-Cell = tuple[int, ...]  # the index of a bin for each sensor
-CALLED = "()"  # suffix of `field` in files if `field` is a function, which is stored by name
+Cell = tuple[int, ...]  # for each sensor, the index of a bin
+CALLED = "()"  # suffix of `field` in files if it is a function, which is stored by name
 
 
 @dataclass(frozen=True)
 class Sensor:
     """A declared input and its binning.
 
-    With `topic` and `field` (dotted, or a function of the message), TARL reads the sensor from the messages delivered
-    to the node. Without a topic, the test sets the sensor by `tarl.observe(name=value)`. The condition of a repair (its
-    guard) can test a sensor that has a dotted field. It can also test a sensor whose `expr` names a variable of the
-    node that holds its value, such as `self.heading`. Other sensors only serve for diagnosis.
+    With `topic` and `field` (a dotted path, or a function of the message), TARL reads the sensor from the messages that
+    the node receives. Without a topic, the test sets it with `tarl.observe(name=value)`. A repair's condition (guard)
+    can test a sensor that has a dotted field, or whose `expr` names a variable of the node with its value, such as
+    `self.heading`. All other sensors are only used for diagnosis.
 
-    `low`, `high` (units of the field) and `bins` make the sensor numeric, with one more bin at either end for values
-    outside. `edges` gives bins of unequal width. With `bins` alone, the edges are learned from recorded episodes, so
-    that all bins hold about equally many values. An `angle` wraps around; its range is -π to π unless `low` and `high`
-    say otherwise. `categories` lists the values of a text sensor. Without any of these, the values are booleans or
-    small integers, and each has its own bin. If `tilings` is set, the utility is stored in this number of overlapping
-    grids of tiles instead of bins, so that similar values share what they learn.
+    - `low`, `high` (in units of the field) and `bins` make the sensor numeric, with an additional bin at each end for
+      values outside.
+    - `edges` gives bins of unequal width.
+    - `bins` alone means that the edges are learned from recorded episodes, so that all bins have about equally many
+      values.
+    - An `angle` wraps around; by default, its range is -π to π.
+    - `categories` lists the values of a text sensor.
+    - Without any of these, values are booleans or small integers, each with its own bin.
+    - `tilings` stores the utility in this number of overlapping grids of tiles instead of bins, so that similar values
+      share what they learn.
     """
 
     name: str
@@ -49,7 +53,7 @@ class Sensor:
     edges: tuple[float, ...] = ()
     angle: bool = False
     tilings: int = 0
-    learned: int = 0  # number of bins requested if the edges were learned; else 0
+    learned: int = 0  # number of bins requested if the edges were learned, otherwise 0
     expr: str = ""
 
     def __post_init__(self) -> None:
@@ -138,7 +142,7 @@ class Sensor:
 
     def _check_categories(self) -> None:
         given: Any = self.categories
-        if isinstance(given, list):  # convert to a tuple, so that the sensor stays hashable
+        if isinstance(given, list):  # a tuple keeps the sensor hashable
             object.__setattr__(self, "categories", tuple(given))
         if not isinstance(given, list | tuple) or not all(isinstance(one, str) for one in given):
             raise SettingsError(
@@ -156,23 +160,23 @@ class Sensor:
 
     @property
     def to_learn(self) -> bool:
-        """Return whether the bins of the sensor must still be learned."""
+        """Return whether the sensor's bins must still be learned."""
         return self.bins is not None and self.low is None
 
     @property
     def guardable(self) -> bool:
-        """Return whether the condition of a repair can read the sensor in the node."""
+        """Return whether a repair's condition can read the sensor in the node."""
         return bool(self.expr or self.path)
 
     @property
     def path(self) -> str:
-        """Return the dotted field, or an empty string if there is no field that a node can read."""
+        """Return the dotted field; empty if there is no field that a node can read."""
         dotted = self.topic is not None and isinstance(self.field, str) and not self.field.endswith(CALLED)
         return str(self.field) if dotted else ""
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """Return the edges of the bins, length bins + 1; empty without bins."""
+        """Return the bin edges (bins + 1 of them); empty without bins."""
         if self.edges or self.bins is None or self.low is None or self.high is None:
             return self.edges
         width = (self.high - self.low) / self.bins
@@ -180,14 +184,14 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of the narrowest bin; with a single edge, one unit of its last decimal place."""
+        """Return the width of the narrowest bin; with a single edge, one unit in its last decimal place."""
         decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
     def bin(self, value: Any) -> int | None:
-        """Return the bin of `value`: 0 to bins - 1 within the range, -1 below it, `bins` above it, None for NaN.
+        """Return a value's bin: 0 to bins - 1 in the range, -1 below it, `bins` above it, None for NaN.
 
-        Raise SettingsError for a value that the sensor cannot have.
+        Raise SettingsError if the sensor cannot have this value.
         """
         if self.bins is not None:
             number = self._measurement(value)
@@ -219,7 +223,7 @@ class Sensor:
 
     def _place(self, number: float) -> int | None:
         if self.bins is None or self.low is None or self.high is None:
-            return 0  # the edges are not known yet; a plain run of the test never learns them
+            return 0  # the edges are still unknown; a plain run of the test never learns them
         if self.angle:
             if math.isinf(number):
                 return None
@@ -233,9 +237,9 @@ class Sensor:
         return min(index, self.bins - 1)  # the last bin includes its upper end
 
     def interval(self, first: int, last: int) -> tuple[float, float]:
-        """Return the interval covered by bins `first` to `last`; infinite beyond the outer bins.
+        """Return the interval of bins `first` to `last`; infinite beyond the outer bins.
 
-        For an angle, `last` may exceed the last bin: then the interval wraps around, and its start exceeds its end.
+        For an angle, `last` may exceed the last bin: the interval then wraps around, and its start exceeds its end.
         """
         if self.bins is None or self.low is None or self.high is None:
             return float(first), float(last)
@@ -249,7 +253,7 @@ class Sensor:
         )
 
     def label(self, index: int) -> str:
-        """Return the displayed name of a bin: `4.0-4.4`, `true`, a category."""
+        """Return a bin's name as displayed: `4.0-4.4`, `true`, or a category."""
         if self.numeric:
             low, high = self.interval(index, index)
             return f"{low:g}-{high:g}{self.unit and ' ' + self.unit}"
@@ -259,7 +263,7 @@ class Sensor:
 
 
 def as_number(value: Any) -> float | None:
-    """Return a real number or a numpy scalar as a float; None for anything else."""
+    """Return a real number or numpy scalar as a float; None for anything else."""
     if not isinstance(value, Real) and getattr(value, "ndim", None) != 0:
         return None
     try:
@@ -276,7 +280,7 @@ def reading(message: Any, field: str | Callable[[Any], Any]) -> Any:
 
 
 def stored(sensor: Sensor) -> Sensor:
-    """Return the sensor in serialisable form: a function is replaced by its name, which then ends with CALLED."""
+    """Return the sensor in serialisable form: a function becomes its name, followed by CALLED."""
     if not callable(sensor.field):
         return sensor
     return replace(
@@ -285,13 +289,13 @@ def stored(sensor: Sensor) -> Sensor:
 
 
 def binning_digest(sensors: Iterable[Sensor]) -> str:
-    """Return a short hash of the sensors' inputs and bins. If hashes are equal, cells are comparable."""
+    """Return a short hash of the sensors' inputs and bins. If hashes are equal, cells can be compared."""
     text = json.dumps([asdict(stored(sensor)) for sensor in sensors], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def declared(sensor: Sensor) -> Sensor:
-    """Return the sensor as the marker declares it, without learned edges."""
+    """Return the sensor as declared in the marker, without learned edges."""
     plain = stored(sensor)
     return (
         replace(plain, edges=(), low=None, high=None, bins=plain.learned, learned=0)

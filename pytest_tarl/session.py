@@ -1,4 +1,4 @@
-"""A pytest run with TARL's flags: select tests, run each one in the selected mode, and report at the end."""
+"""A pytest run with TARL's flags: select tests, run each in the selected mode, and report at the end."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from pytest_tarl.rollout import Rollout
     from pytest_tarl.sharing import SharedEpisodes
 
-PLAIN_WIDTH = 80  # number of columns if there is no terminal reporter (`-p no:terminal`)
+PLAIN_WIDTH = 80  # columns if there is no terminal reporter (`-p no:terminal`)
 
 UNMARKED = (
     "NOTHING WAS RUN: no collected test has the marker. With TARL's flags, pytest runs only tests with "
@@ -43,7 +43,7 @@ UNMARKED = (
 
 
 class TarlSession:
-    """The hooks of one run; registered only if a mode is selected."""
+    """The hooks of a run; registered only if a mode is selected."""
 
     def __init__(self, config: pytest.Config, options: Options) -> None:
         if _of_all_tests(options) and (
@@ -71,9 +71,9 @@ class TarlSession:
         drifts = marker.kwargs.get("drifts", {})
         names = (
             list(drifts) if isinstance(drifts, Mapping) else []
-        )  # if the marker is invalid, running the test reports it
+        )  # running the test will report that the marker is invalid
         if self.options.log is not None or self.options.bags:
-            names = []  # the names of the files for a log or bag contain no drift
+            names = []  # files for a log or bag have no drift in their names
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if self.options.mode == "stress":
@@ -116,7 +116,7 @@ class TarlSession:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """Run a designated test (a test with the marker `tarl`) in the selected mode, with one report per phase.
+        """Run a designated test (one with the marker `tarl`) in the selected mode, with one report per phase.
 
         If Ctrl-C ended the test, raise KeyboardInterrupt after its reports.
         """
@@ -133,7 +133,7 @@ class TarlSession:
         if nextitem is None or not together:
             self._tell()
         if call.excinfo is None and getattr(call.result, "interrupted", False):
-            raise KeyboardInterrupt  # the results are reported: end the run before the next test
+            raise KeyboardInterrupt  # the results are reported, so end the run before the next test
         return True
 
     def _tell(self) -> None:
@@ -157,7 +157,7 @@ class TarlSession:
     def _share(self, shared: SharedEpisodes) -> None:
         """Spend the remaining shared episodes on undecided comparisons.
 
-        Then replace all comparisons by their reports.
+        Afterwards, replace all comparisons by their reports.
         """
         from pytest_tarl.accounts import Compared
 
@@ -170,7 +170,7 @@ class TarlSession:
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: object) -> bool | None:
-        """Apply the limit of pytest-timeout to each episode of a designated test, not to the whole test."""
+        """Apply pytest-timeout's limit to each episode of a designated test, not to the whole test."""
         return None if item.get_closest_marker("tarl") is None else defer_limit(item, settings)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -182,12 +182,12 @@ class TarlSession:
         self._summary.write(terminalreporter, self._width(), self._joined().lines)
 
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Delete the stored episodes of finished tests, unless the run was interrupted."""
+        """Delete the kept episodes of finished tests, unless the run was interrupted."""
         if self._resumable is not None:
             self._resumable.ended(exitstatus)
 
     def pytest_unconfigure(self) -> None:
-        """Print the commands that apply the patches, or a warning that nothing was compared, as the last output."""
+        """Print, as the last output, the commands that apply the patches, or a warning that nothing was compared."""
         if not self._has_terminal():
             return
         terminal = self.config.get_terminal_writer()
@@ -267,9 +267,9 @@ class TarlSession:
     def _rollout(
         self, item: pytest.Function, marked: Designation, instruments: Instruments, opened: ExitStack
     ) -> Rollout:
-        """Return the rollout of a test, which runs episodes in this process or in workers.
+        """Return a rollout that runs a test's episodes in this process or in workers.
 
-        Workers end with the test.
+        The workers end with the test.
         """
         if self.options.workers == 1 and self.options.cluster is None:
             return ItemRollout(item, marked, instruments)
@@ -298,7 +298,7 @@ class TarlSession:
         return self.config.pluginmanager.has_plugin("terminalreporter")
 
     def _say(self, sentence: str) -> None:
-        """Print a sentence before the episodes run; in a worker of xdist, which has no terminal, at the end."""
+        """Print a sentence before the episodes run; in an xdist worker, which has no terminal, print it at the end."""
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
             reporter.ensure_newline()

@@ -1,4 +1,4 @@
-"""Decide when a recording ends: after a fixed number of episodes, or once it shows whether `min_success` holds."""
+"""Decide when a recording ends: after a fixed number of episodes, or once it is clear whether `min_success` holds."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 from pytest_tarl.report.guarantee_words import percent
 
-ENOUGH_FAILURES = 5  # minimum number of failures for a recording to stop early
+ENOUGH_FAILURES = 5  # minimum number of failures to stop a recording early
 MOST = 20_000  # maximum number of episodes if a confidence is required
 
 
 @dataclass
 class Settling:
-    """Stopping rule, called after every episode. At least `asked` episodes run, or fewer if too many of them fail."""
+    """Stopping rule, called after every episode. At least `asked` episodes run, unless too many fail."""
 
     designation: Designation
     asked: int
@@ -33,9 +33,9 @@ class Settling:
         return self.asked if self.designation.confidence is None else max(MOST, self.asked)
 
     def __call__(self, samples: Sequence[Sample]) -> bool:
-        """Add the newest sample and return whether to stop.
+        """Add the newest sample; return whether to stop.
 
-        Raise RecordingError if the total reward of the sample is out of range.
+        Raise RecordingError if the sample's total reward is out of range.
         """
         within(samples[-1], self.designation.total_range)
         self.episodes, self.passed = len(samples), self.passed + int(samples[-1].passed.all())
@@ -45,7 +45,7 @@ class Settling:
 
     @property
     def failing(self) -> str:
-        """Return a sentence with the number of failed episodes if too many failed, or ""."""
+        """Return a sentence with the number of failed episodes if too many failed, or an empty text."""
         least, failed = self.designation.min_success, self.episodes - self.passed
         if self.designation.confidence is None:
             stopped = (
@@ -89,7 +89,7 @@ class Settling:
 
 
 def within(sample: Sample, declared: tuple[float, float] | None) -> None:
-    """Raise RecordingError if the total reward of an episode lies outside the marker's `total_range`."""
+    """Raise RecordingError if an episode's total reward is outside the marker's `total_range`."""
     if declared is None:
         return
     for seed, total in zip(sample.seeds, sample.total.tolist(), strict=True):

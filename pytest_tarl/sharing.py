@@ -1,4 +1,4 @@
-"""`--tarl-total`: all comparisons of a run share a number of episodes; undecided ones get the remaining episodes."""
+"""`--tarl-total`: all comparisons of a run share a number of episodes; undecided ones get the rest."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.report.shares import Share, sentence
 
 
 def shortage(total: int, comparisons: int) -> str:
-    """Return a sentence if `total` episodes are too few for this number of comparisons, or ""."""
+    """Return a sentence if `total` episodes are too few for this number of comparisons, or an empty text."""
     if total >= FEWEST * comparisons:
         return ""
     return (
@@ -24,9 +24,9 @@ def shortage(total: int, comparisons: int) -> str:
 
 @dataclass(frozen=True)
 class SharedEpisodes:
-    """The plan by which the comparisons of a run share its episodes.
+    """How the comparisons of a run share its episodes.
 
-    A look is one test for a verdict. A comparison has at most `most_looks`.
+    A look is one test for a verdict; each comparison has at most `most_looks`.
     """
 
     total: int
@@ -35,7 +35,7 @@ class SharedEpisodes:
 
     @cached_property
     def looks(self) -> tuple[Look, ...]:
-        """Return the looks of every comparison; they are the same for all and fixed before the first episode."""
+        """Return the looks of every comparison, which are the same for all and fixed before the first episode."""
         return schedule(self.total, self.comparisons, self.most_looks)
 
     @property
@@ -44,14 +44,14 @@ class SharedEpisodes:
         return Stage(self.looks, self.looks[0].episodes)
 
     def following(self, outcomes: Sequence[object]) -> tuple[int, Stage] | None:
-        """Return the index of the outcome whose comparison continues, and its next stage, or None if none continues."""
+        """Return the index of the outcome whose comparison continues, with its next stage; None if none does."""
         standings = [_standing(one) for one in outcomes]
         number = chosen(standings, self.looks, self._left(outcomes))
         look = next_look(standings[number], self.looks) if number is not None else None
         return None if number is None or look is None else (number, Stage(self.looks, look.episodes))
 
     def notes(self, outcomes: Sequence[object]) -> list[str]:
-        """Return, for each comparison, a note that says how many episodes it got and why; "" for other outcomes."""
+        """Return for each comparison a note on how many episodes it got, and why; "" for other outcomes."""
         return [
             self._note(one, self._left(outcomes)) if isinstance(one, Compared) else "" for one in outcomes
         ]

@@ -1,4 +1,4 @@
-"""Convert the messages and observations of an episode to sensor bins and signal values."""
+"""Convert an episode's messages and observations to sensor bins and signal values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Situation:
-    """The current bins of the sensors, which together form a cell. Each new cell is passed to the recorder."""
+    """The current bins of the sensors, which form a cell; each new cell is passed to the recorder."""
 
     def __init__(
         self,
@@ -27,8 +27,8 @@ class Situation:
         recorder: Recorder,
     ) -> None:
         self.topics: dict[str, str] = {}  # topic with a message → message type
-        self.values: dict[str, list[float]] = {}  # values of sensors with bins to learn
-        self.known = False  # whether there was a moment at which all sensors had a value
+        self.values: dict[str, list[float]] = {}  # values of sensors whose bins are learned
+        self.known = False  # whether all sensors have ever had a value at the same time
         self._sensors = sensors
         self._requirements = requirements
         self._formulas = formulas
@@ -77,7 +77,7 @@ class Situation:
             self._latch()
 
     def problem(self) -> RecordingError | None:
-        """Return the error of an episode without a usable cell, or None if it has one."""
+        """Return the error for an episode without a usable cell, or None."""
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
             return RecordingError(_silence(silent[0]))
@@ -89,10 +89,10 @@ class Situation:
         return None
 
     def _check_unused(self, name: str, known: Sequence[str]) -> None:
-        """Raise SettingsError for a name that is probably misspelt.
+        """Raise SettingsError if a name is probably misspelt.
 
-        A test with formulas may observe additional names. A name counts as misspelt if it resembles a declared name
-        that the test never observes.
+        A test with formulas may observe additional names. A name counts as misspelt if it resembles a declared one that
+        the test never observes.
         """
         said = self._requirements.said
         close = difflib.get_close_matches(name, known, 1)
@@ -117,7 +117,7 @@ class Situation:
 
 
 def _same(first: str, second: str) -> bool:
-    """Compare topic names; a leading slash makes no difference."""
+    """Compare topic names, ignoring a leading slash."""
     return first.lstrip("/") == second.lstrip("/")
 
 

@@ -1,6 +1,6 @@
-"""Spaces of drifts: the directions in which a world can change. Each direction has a nominal value.
+"""Spaces of drifts: the directions in which a world can change, each with a nominal value.
 
-A point of a space holds one number per direction, by name: the value of a range, or the index of an option.
+A point of a space has one number per direction, by name: the value of a range, or the index of an option.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ DIRECTIONS = "Drift.range(…, nominal=…), Drift.choice(…), or a fault such 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A closed range of numbers, from which each episode draws uniformly. In a space, it has a nominal number.
+    """A closed range of numbers, from which each episode draws uniformly; in a space, it has a nominal number.
 
-    With a profile, the number drawn is the size of a drift over time.
+    With a profile, the drawn number is the size of a drift over time.
     """
 
     low: float
@@ -36,7 +36,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A set of options, from which each episode draws one; `usual` is the index of the nominal option."""
+    """Options, one of which each episode draws; `usual` is the index of the nominal one."""
 
     options: tuple[Any, ...]
     usual: int = 0
@@ -45,7 +45,7 @@ class Choice:
 class Fault(Protocol):
     """A fault of the nodes' messages or processes.
 
-    `extent` holds its possible sizes; at the nominal size, there is no fault.
+    `extent` has the possible sizes; at the nominal size, there is no fault.
     """
 
     @property
@@ -56,7 +56,7 @@ class Fault(Protocol):
         """Install the fault in an episode's ROS. `name` is the direction's name, for messages."""
 
     def check(self, ros: Any, name: str) -> None:
-        """Raise SettingsError after an episode in which the fault's topic or node never occurred."""
+        """Raise SettingsError after an episode without the fault's topic or node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Space:
         return {name: nominal(extent) for name, extent in self.extents.items()}
 
     def world(self, point: Point) -> dict[str, Any]:
-        """Return the value of `tarl_drift` at a point, as a dictionary by direction."""
+        """Return the value of `tarl_drift` at a point: a dictionary by direction."""
         return {name: world_value(extent, point[name]) for name, extent in self.directions.items()}
 
     def active(self, point: Point) -> Mapping[str, tuple[Fault, float]]:
@@ -100,19 +100,19 @@ def nominal(extent: Span | Choice) -> float:
 
 
 def value_of(extent: Span | Choice, number: float) -> Any:
-    """Return the value for a point's number in one direction: an option of a choice, or the number itself."""
+    """Return the value for a point's number in one direction: an option, or the number itself."""
     return extent.options[int(number)] if isinstance(extent, Choice) else number
 
 
 def world_value(extent: Span | Choice, number: float) -> Any:
-    """Return the value in `tarl_drift` for a point's number in one direction; a drift over time becomes a Schedule."""
+    """Return the value in `tarl_drift` for a point's number in one direction; drifts over time become Schedules."""
     if isinstance(extent, Span) and extent.profile is not None:
         return Schedule(nominal(extent), number, extent.profile)
     return value_of(extent, number)
 
 
 def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None = None) -> Span:
-    """Return a checked range; `what` names it in messages. Raise SettingsError if the range is invalid."""
+    """Return a checked range; `what` names it in messages. Raise SettingsError if it is invalid."""
     least, most = finite_number(low), finite_number(high)
     if least is None or most is None or not least < most:
         raise SettingsError(f"{what}: give two finite numbers, the smaller one first.")
@@ -131,7 +131,7 @@ def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None =
 
 
 def choice(options: tuple[Any, ...], usual: Any) -> Choice:
-    """Return checked options; the first one equal to `usual` is nominal. Raise SettingsError for invalid options."""
+    """Return checked options, of which the first that equals `usual` is nominal. Raise SettingsError if invalid."""
     if len(options) < 2:
         raise SettingsError(f"Drift.choice needs at least two options, got {len(options)}.")
     found = [index for index, option in enumerate(options) if option is usual or _equal(option, usual)]
@@ -141,7 +141,7 @@ def choice(options: tuple[Any, ...], usual: Any) -> Choice:
 
 
 def _equal(option: Any, usual: Any) -> bool:
-    """Return whether two options are equal; False if they cannot be compared or, like arrays, give no truth value."""
+    """Return whether two options are equal; False if they cannot be compared or, like arrays, have no truth value."""
     try:
         return bool(option == usual)
     except (ValueError, TypeError):
@@ -149,7 +149,7 @@ def _equal(option: Any, usual: Any) -> bool:
 
 
 def space(parts: Mapping[str, Any]) -> Space:
-    """Return a space of checked ranges, choices and faults. Raise SettingsError for directions of other kinds."""
+    """Return a space of checked ranges, choices and faults. Raise SettingsError for other directions."""
     if not parts:
         raise SettingsError(f"Drift.space() has no direction: name at least one, each {DIRECTIONS}.")
     directions: dict[str, Span | Choice] = {}

@@ -19,9 +19,9 @@ _OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
 
 
 def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
-    """Return the modules in `among` that refer to a module in `gone` or to its contents, directly or indirectly.
+    """Return the modules in `among` that refer to a module in `gone` or to its contents, even indirectly.
 
-    The result holds only modules that can be imported again: Python source files that are not tests.
+    The result has only modules that can be imported again: Python source files that are not tests.
     """
     going = {id(module): module for module in gone}
     left = [name for name in among if _renewable(sys.modules.get(name))]
@@ -39,7 +39,7 @@ def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
 
 
 def outlived(files: Collection[Path]) -> list[Path]:
-    """Return the files with functions that still exist in memory and therefore still run the text before the edit."""
+    """Return the files with functions that are still in memory, and therefore still run the text before the edit."""
     wanted = {str(file): file for file in files}
     gc.collect()
     codes = (one.__code__.co_filename for one in gc.get_objects() if type(one) is FunctionType)
@@ -47,14 +47,14 @@ def outlived(files: Collection[Path]) -> list[Path]:
 
 
 def of_tests(file: Path) -> bool:
-    """Return whether pytest itself imports this file: a test module or conftest.py."""
+    """Return whether pytest itself imports this file, as it does test modules and conftest.py."""
     return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
 
 
 class _Imports:
-    """The dotted names that a module imports anywhere; they are needed because a constant does not refer to its module.
+    """The dotted names that a module imports anywhere; needed because a constant does not refer to its module.
 
-    Imports inside functions count, because a function called at module level may return such a constant.
+    Imports inside functions count: a function called at module level may return such a constant.
     """
 
     def __init__(self, module: ModuleType) -> None:
@@ -63,7 +63,7 @@ class _Imports:
     def any_of(self, names: Collection[str]) -> bool:
         """Return whether the module imports one of the names.
 
-        For speed, decode only code that uses the last part of a name.
+        For speed, only code that uses the last part of a name is decoded.
         """
         last = {name.rpartition(".")[2] for name in names}
         return any(
@@ -74,7 +74,7 @@ class _Imports:
 
     @cached_property
     def _importing(self) -> list[CodeType]:
-        """The module's code objects that may contain an import; inline caches in bytecode can look like an import."""
+        """Return the module's code objects that may import; inline caches in bytecode can look like imports."""
         code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
         return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Starter:
-    """Start nodes in the ROS of one episode; the function `ros` returns that ROS."""
+    """Start nodes in an episode's ROS, which the function `ros` returns."""
 
     def __init__(self, folder: Path, imports: NodeImports, ros: Callable[[], Ros]) -> None:
         self._folder = folder
@@ -39,9 +39,9 @@ class Starter:
         entry: str | None,
         launch: str | Literal[False] | None,
     ) -> None:
-        """Start a file with the parameters of its launch file, and with its arguments if `argv` is empty.
+        """Start a file with the parameters of its launch file and, if `argv` is empty, with its arguments.
 
-        Raise SettingsError if there is no such file, or for invalid parameters.
+        Raise SettingsError if there is no such file, or parameters are invalid.
         """
         path = existing(self._folder, script)
         if path is None or not path.is_file():
@@ -71,7 +71,7 @@ class Starter:
         replaced: Mapping[str, Replacement],
         parameters: Parameters | None,
     ) -> None:
-        """Call the functions that replace nodes of a launch file, then start the file's Python nodes in their order."""
+        """Call the functions that replace nodes of a launch file, then start its Python nodes in order."""
         from pytest_tarl.ros.launch_plan import launch_path, launch_plan, named
         from pytest_tarl.ros.stand_in import StandIn
 
@@ -105,7 +105,7 @@ class Starter:
 
 
 def _check(only: object, arguments: object, replaced: object) -> None:
-    """Raise SettingsError for an argument of `tarl.launch` that is not of the required type."""
+    """Raise SettingsError if an argument of `tarl.launch` has the wrong type."""
     if isinstance(only, str):
         raise SettingsError(f'tarl.launch: only takes a list of node names, such as only=["{only}"].')
     for name, value in (("arguments", arguments), ("replace", replaced)):
@@ -135,9 +135,9 @@ def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str])
 
 
 def node_files(nodes: Sequence[str], folder: Path, where: str) -> tuple[str, ...]:
-    """Return the node files of a marker. Each launch file is expanded to the Python programs that it starts.
+    """Return a marker's node files, with each launch file replaced by the Python programs that it starts.
 
-    Raise SettingsError for a launch file that is unknown or has no Python nodes; `where` begins the message.
+    Raise SettingsError, with a message that begins with `where`, if a launch file is unknown or has no Python nodes.
     """
     from tarl_lint.workspace.launch_lookup import is_launch_name
 

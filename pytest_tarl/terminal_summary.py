@@ -1,4 +1,4 @@
-"""Pass the reports of tests to the terminal summary, including those from other processes."""
+"""Pass tests' reports to the terminal summary, including those from other processes."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
     from pytest_tarl.accounts import Account
 
-ACCOUNT = "tarl_account"  # attribute of a report; holds plain values, which xdist can send
+ACCOUNT = "tarl_account"  # attribute of a report; has only plain values, which xdist can send
 
 
 def attach(report: pytest.TestReport, account: Account) -> None:
-    """Attach TARL's report of a test (an account) to pytest's report of it."""
+    """Attach TARL's report of a test (an account) to pytest's."""
     told = {
         "lines": [printable(line) for line in account.lines],
         "patch": str(account.patch or ""),
@@ -38,14 +38,14 @@ class Summary:
         self.patches: list[str] = []  # paths of patches that repair the tests
 
     def collect(self, report: pytest.TestReport) -> None:
-        """Collect the account of a report; ignore one that was collected before."""
+        """Collect a report's account, unless it was already collected."""
         told = getattr(report, ACCOUNT, None)
         if told and told not in self._told:
             self._told.append(told)
             self.patches += [told["patch"]] if told["patch"] else []
 
     def warning(self) -> str:
-        """Return a warning if tests without a recording were not compared, or ""."""
+        """Return a warning if tests without a recording were not compared, or an empty text."""
         missing = sum(bool(one["unrecorded"]) for one in self._told)
         if not missing:
             return ""

@@ -1,4 +1,4 @@
-"""Find the node files of a marker that contain no recorded statement."""
+"""Find the node files of a marker that have no recorded statement."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def silent_files(
     root: Path,
     passed_with_imports: Callable[[Sequence[Path], Path], Sequence[Path]],
 ) -> Iterator[str]:
-    """Yield sentences, with advice, for the named files that take no part in a flow.
+    """Yield sentences, with advice, on the named files that take no part in a flow.
 
-    A file takes part if it contains a site (a recorded statement), or a name that a site uses, such as a constant.
-    `passed_with_imports` returns the files that flows pass through if imported files are analysed, too.
+    A file takes part if it has a site (a recorded statement), or a name that a site uses, such as a constant.
+    `passed_with_imports` returns the files that flows pass through if imported files are also analysed.
     """
     more: Sequence[Path] | None = None
     cut_off = []
@@ -62,7 +62,7 @@ def _shown(file: Path, root: Path) -> str:
 
 
 def _unfollowed(file: Path, files: Sequence[Path]) -> str:
-    """Return why the analysis does not follow an import of the file, with advice, or ""."""
+    """Return why the analysis does not follow an import of the file, with advice, or an empty text."""
     folder = file.parent
     importing = [one.name for one in files if one != file and f"{folder.name}.{file.stem}" in _imports(one)]
     if importing and not (folder / "__init__.py").exists():
@@ -72,7 +72,7 @@ def _unfollowed(file: Path, files: Sequence[Path]) -> str:
 
 
 def _imports(file: Path) -> set[str]:
-    """Return the dotted names that a file imports, and also the last two parts of each name."""
+    """Return the dotted names that a file imports, and the last two parts of each."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(file.read_bytes())):
         if isinstance(node, ast.ImportFrom) and node.module:

@@ -6,7 +6,7 @@ import ast
 
 
 def prefixes(code: str) -> tuple[str, ...]:
-    """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; empty for any other expression."""
+    """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; none for any other expression."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except (SyntaxError, ValueError):

@@ -1,4 +1,4 @@
-"""Adapters that use common simulators as the world of a test: Gymnasium environments, with the node as the agent."""
+"""Adapters for common simulators as the world of a test: Gymnasium environments, with the node as the agent."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_tarl.extras import install_command
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
 
-LARGEST_SEED = 2**31  # exclusive upper limit of seeds; every version of Gymnasium accepts seeds below it
+LARGEST_SEED = 2**31  # seeds are below this; every version of Gymnasium accepts such seeds
 
 
 class GymnasiumWorld:
@@ -34,7 +34,7 @@ class GymnasiumWorld:
         dt: float | None = None,
         options: Mapping[str, Any] | None = None,
     ) -> None:
-        """Reset the environment with a seed from the episode; close the environment when the episode ends.
+        """Reset the environment with a seed from the episode; close it when the episode ends.
 
         Args:
             tarl: The fixture of the test.
@@ -72,7 +72,7 @@ class GymnasiumWorld:
     def step(self) -> float:
         """Publish the observation, run the node for a step, take its action, and return the environment's reward.
 
-        Raise SettingsError if the action is not one of the environment's.
+        Raise SettingsError if the environment does not have this action.
         """
         observations, actions = self._topics
         self._tarl.bus.publish(observations, self._observe(self.observation))
@@ -84,7 +84,7 @@ class GymnasiumWorld:
         return self.reward
 
     def _action(self, asked: Any, topic: str) -> Any:
-        """Convert an action to the environment's action space. Raise SettingsError if the action does not fit."""
+        """Convert an action to the environment's action space. Raise SettingsError if it does not fit."""
         import numpy as np
 
         space = self._environment.action_space
@@ -115,7 +115,7 @@ def _made(name: str) -> Any:
 
 
 def _time_step(environment: Any) -> float:
-    """Return the environment's time step `dt` or `tau`, in s. Raise SettingsError if `dt` and `tau` are both absent."""
+    """Return the environment's time step `dt` or `tau` in s. Raise SettingsError if it has neither."""
     inner = environment.unwrapped
     for name in ("dt", "tau"):
         value = getattr(inner, name, None)
