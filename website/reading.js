@@ -1,4 +1,4 @@
-// Code that is wider than the page can be scrolled: let the keyboard reach it, also after the theme has redrawn it
+// Wide code blocks scroll; make them reachable by keyboard, even after the theme has redrawn them
 const reach = () => {
   for (const code of document.querySelectorAll("pre:not(.mermaid) > code:not([tabindex])")) code.tabIndex = 0;
 };
