@@ -2,11 +2,11 @@
 
     python benchmarks/acceptance.py [--runs 400]
 
-The totals of missions are random numbers; nothing is simulated. The total of a successful mission is normal with mean
-`ratio` × 10; a failed mission earns -10, as little as the worst recorded mission. Designed missions earn 10 on average
-and never fail. A share of the variance depends only on the seed; comparing missions with equal seeds removes this
-share. A repair is right if it loses less than 5 % of the designed reward on average, including failures, and fails in
-less than 5 % of its missions.
+The totals of missions are random numbers; nothing is simulated. A successful mission's total is normal with mean
+`ratio` × 10. A failed mission earns -10, as little as the worst recorded mission. Designed missions earn 10 on average
+and never fail. Part of the variance depends only on the seed, and is removed by comparing missions with equal seeds. A
+repair is right if it loses less than 5 % of the designed reward on average, including failures, and fails in less than
+5 % of its missions.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ FAILING = (0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)
 
 @dataclass(frozen=True)
 class Drawn:
-    """Random total rewards of missions: without a repair, and with a repair on the same seeds."""
+    """Random totals of missions, without a repair and with a repair on the same seeds."""
 
     seed: int
     spread: float
-    shared: float  # share of the variance that the seed determines
+    shared: float  # share of the variance that depends only on the seed
 
     def designed(self) -> np.ndarray:
-        """Return the totals of the unrepaired program in the designed world."""
+        """Return the unrepaired program's totals in the designed world."""
         return self._totals(0, DESIGNED)
 
     def repaired(self, ratio: float, failing: float) -> list[Outcome]:
@@ -51,7 +51,7 @@ class Drawn:
 
 
 def tested(drawn: Drawn, ratio: float, failing: float) -> Acceptance:
-    """Test one repair that changes nothing in the designed world."""
+    """Test a repair that changes nothing in the designed world."""
     designed, repaired = drawn.designed(), drawn.repaired(ratio, failing)
     recorded = np.random.default_rng([drawn.seed, 4]).normal(DESIGNED, drawn.spread, 200).tolist()
     return accept(

@@ -1,12 +1,15 @@
-"""Compare the reports of TARL301 to TARL310 with the faults that were put into written workspaces.
+"""Compare the reports of TARL301 to TARL310 with faults that were put into written workspaces.
 
     python benchmarks/architecture_written.py [benchmarks/architecture_written/round1]... [--show]
 
-Each workspace is one file: its files follow each other, each after a line `--- path`. A JSON file beside it, written
-before the linter was run, lists the correct reports. Its key `sown` lists the faults that were put in on purpose: for
-each, the rule that must report it and texts that the message must contain. The key `also_true` lists other correct
-reports. The key `judged_true` lists reports that were found to be correct after the run. All other reports count as
-false.
+Each workspace is one text file; each of its files follows a line `--- path`. A JSON file beside it, written before the
+linter was run, lists the correct reports:
+
+- `sown`: the faults put in on purpose, each with the rule that must report it and texts that the message must contain
+- `also_true`: other correct reports
+- `judged_true`: reports found to be correct after the run
+
+All other reports count as false.
 """
 
 from __future__ import annotations
@@ -27,11 +30,11 @@ from tarl_lint.system.command import ALL, Request, systems
 from tarl_lint.system.hazards import hazards
 
 FOLDER: Final = Path(__file__).with_suffix("")
-Report = tuple[str, str]  # the code of a rule and its message
+Report = tuple[str, str]  # code of a rule, message
 
 
 def main() -> int:
-    """Print the figures of each workspace, and of each folder."""
+    """Print the figures for each workspace and folder."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("folders", type=Path, nargs="*")
     parser.add_argument(
@@ -61,7 +64,7 @@ def _wrong(truth: Mapping[str, Any], reports: Sequence[Report]) -> Iterator[Repo
 
 
 def _fits(fault: Mapping[str, Any], report: Report) -> bool:
-    """Return whether a report has the fault's rule and contains each of the fault's texts as a complete name."""
+    """Return whether a report has the fault's rule, and each of the fault's texts as a complete name."""
     code, message = report
     return fault["code"] == code and all(
         re.search(rf"(?<![\w/]){re.escape(text)}(?![\w/])", message) for text in fault["about"]
@@ -76,7 +79,7 @@ def _show(missed: Sequence[Mapping[str, Any]], wrong: Sequence[Report]) -> None:
 
 
 def _reports(workspace: Path) -> Iterator[Report]:
-    """Analyse all launch files of a workspace, and yield each distinct report once."""
+    """Analyse a workspace's launch files; yield each distinct report once."""
     with tempfile.TemporaryDirectory() as place:
         root = Path(place)
         Texts.read(workspace).unpack(root)

@@ -1,11 +1,11 @@
-"""Measure the speed of replaying a recorded mission, as a multiple of real time.
+"""Measure how fast a recorded mission is replayed, as a multiple of real time.
 
     python benchmarks/bags.py [--seconds 60]
 
-A mission of the shuttle is written to a bag of each kind. Each bag is then replayed through the shuttle's node, while
-all sites of the node are recorded. The bag has messages of odometry, terrain and leg ten times a second. Once a second,
-it also has a picture of 640 × 480, to which the node does not subscribe. Times are CPU times of the process, the
-minimum of three runs.
+A mission of the shuttle is written to one bag of each kind, which is then replayed through the shuttle's node, with all
+its sites recorded. The bag has messages of odometry, terrain and leg ten times per second. Once per second it also has
+a picture of 640 × 480, to which the node does not subscribe. Times are CPU times of the process, the minimum of three
+runs.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def written(folder: Path, kind: str, seconds: int) -> Path:
 
 
 def fill(writer: Any, store: Any, serialize: Callable[[Any, str], Any], seconds: int) -> None:
-    """Write messages of a shuttle that drives back and forth."""
+    """Write the messages of a shuttle that drives back and forth."""
     types = {
         "/odom": "nav_msgs/msg/Odometry",
         "/terrain": "std_msgs/msg/Bool",

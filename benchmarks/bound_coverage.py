@@ -2,11 +2,10 @@
 
     python benchmarks/bound_coverage.py [--repetitions 2000]
 
-Each row of the table is a distribution of an episode's total reward, and each column is a number of episodes. A cell
-gives two shares of the samples: those in which the lower bound held, and those in which the upper bound held. Exact
-bounds must hold in at least 94 % of the samples, apart from the sampling error of the benchmark. Approximate bounds
-need not reach any share. For a loss, 200 recorded episodes are compared with new episodes of the same world, and the
-column is the number of new episodes.
+Each row of the table is a distribution of an episode's total reward, and each column a number of episodes. A cell gives
+the shares of samples in which the lower and the upper bound held. Exact bounds must hold in at least 94 % of the
+samples, allowing for the benchmark's sampling error. There is no requirement for approximate bounds. For a loss, 200
+recorded episodes are compared with new episodes of the same world; the column is the number of new episodes.
 """
 
 from __future__ import annotations
@@ -42,19 +41,19 @@ ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range, whos
 OFFLINE = 200
 QUANTILE = 0.05
 LIMIT = 0.01  # margin of an acceptance test, as a share of the range
-TRUTH = 2_000_000  # number of draws from which the true mean or quantile is computed
+TRUTH = 2_000_000  # draws from which the true mean or quantile is computed
 
 Generator = np.random.Generator
 Held = tuple[bool, bool]
 
 
 def zero_inflated(draws: Generator, n: int) -> Floats:
-    """Draw total rewards; nine in ten of them are zero."""
+    """Draw total rewards, nine in ten of which are zero."""
     return np.clip(draws.exponential(2, n), 0, 20) * (draws.random(n) < 0.1)
 
 
 def bimodal(draws: Generator, n: int) -> Floats:
-    """Draw total rewards; one in twenty is far lower than the others."""
+    """Draw total rewards, one in twenty of which is far lower than the others."""
     return np.where(draws.random(n) < 0.05, -9.0, 5.0) + draws.uniform(-1, 1, n)
 
 
@@ -74,13 +73,13 @@ RATES = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class World:
-    """A distribution of total rewards, with methods that check whether the bounds from a sample hold."""
+    """A distribution of total rewards, with checks whether the bounds from a sample hold."""
 
     name: str
 
     @property
     def declared(self) -> Range | None:
-        """Return a range that contains all totals; None if there is none."""
+        """Return a range that contains all totals, or None."""
         return DRAWN[self.name][1]
 
     @cached_property
@@ -99,16 +98,16 @@ class World:
         return holds(mean_of(self.drawn(draws, n), CONFIDENCE, how, anytime=anytime), self.truth[0])
 
     def quantile(self, draws: Generator, n: int) -> Held:
-        """Return whether the bound on the quantile holds; True if the sample is too small for one."""
+        """Return whether the bound on the quantile holds; True if the sample is too small for a bound."""
         low = quantile_low(self.drawn(draws, n), QUANTILE, CONFIDENCE)
         return low is None or low <= self.truth[1], True
 
     def loss(self, draws: Generator, n: int, how: Range | None) -> Held:
-        """Return whether the bounds on a loss hold when the true loss is 0."""
+        """Return whether the bounds on a loss hold if the true loss is 0."""
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
 
     def limit(self, draws: Generator, n: int, how: Range) -> Held:
-        """Return whether the acceptance test never accepts within n episodes if the true loss is exactly the margin."""
+        """Return whether the acceptance test never accepts within n episodes if the true loss equals the margin."""
         margin = LIMIT * (how.high - how.low)
         least = how.low - self.truth[0] - margin
         away = self.truth[0] + margin
@@ -118,7 +117,7 @@ class World:
         return all(stakes.wealth(seen[:end]) < log(1 / (1 - CONFIDENCE)) for end in ends), True
 
     def welch(self, draws: Generator, n: int) -> Held:
-        """Return whether Welch's bounds on the loss hold when the true loss is 0."""
+        """Return whether Welch's bounds on the loss hold if the true loss is 0."""
         low, high = difference_bounds(self.drawn(draws, OFFLINE), self.drawn(draws, n), 1 - CONFIDENCE)
         return low <= 0.0, high >= 0.0
 
@@ -134,7 +133,7 @@ def rate_holds(p: float, draws: Generator, n: int) -> Held:
 
 
 def sequence_holds(p: float, draws: Generator, n: int) -> Held:
-    """Return whether the bounds on a rate hold at every time when they are checked during n episodes."""
+    """Return whether the bounds on a rate hold each time they are checked during n episodes."""
     passed = np.cumsum(draws.random(n) < p)
     barred = log(1 / (1 - CONFIDENCE))
     ends = range(1, n + 1, max(1, n // 50))
@@ -144,7 +143,7 @@ def sequence_holds(p: float, draws: Generator, n: int) -> Held:
 
 @dataclass(frozen=True)
 class Row:
-    """The share of samples of a distribution in which a bound held, by number of episodes."""
+    """How often a bound held in samples of a distribution, by number of episodes."""
 
     bound: str
     exact: bool
@@ -166,7 +165,7 @@ def measured(
     repetitions: int,
     sizes: tuple[int, ...] = EPISODES,
 ) -> Row:
-    """Draw repeatedly and count how often the bounds hold."""
+    """Draw repeatedly, and count how often the bounds hold."""
     found = []
     for n in sizes:
         seen = np.array([held(generator(seed, f"{bound}/{world}/{n}"), n) for seed in range(repetitions)])
@@ -222,7 +221,7 @@ def rows(repetitions: int, workers: int, kinds: str) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Print the table, and the number of exact bounds that hold in too few samples."""
+    """Print the table, and how many exact bounds hold in too few samples."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--repetitions", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)

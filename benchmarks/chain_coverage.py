@@ -3,11 +3,10 @@
     python benchmarks/chain_coverage.py [--chains 4000]
 
 A chain tests eight drifts in turn. The first five fail too often. The last three fail in 5 of 100 episodes, which the
-guarantee just allows. For a share of the seeds, the random outcome is the same under all drifts; for the other seeds,
-the outcomes are independent. It is an error to confirm one of the last three drifts, and a chain may make this error
-with a probability of at most RISK. The table also gives two means: the number of episodes of a chain, and the number of
-the five failing drifts that it confirms. For comparison, it repeats all figures for chains whose tests do not use which
-seeds failed before.
+guarantee just allows; confirming one of them is an error, which a chain may make with a probability of at most RISK.
+For a share of the seeds, the random outcome is the same under all drifts; for the others, outcomes are independent. The
+table also gives the mean number of episodes per chain, and how many of the five failing drifts it confirms on average.
+All figures are repeated for chains whose tests do not use which seeds failed before.
 """
 
 from __future__ import annotations
@@ -33,23 +32,23 @@ GIVEN = Guarantee(0.95, 0.5, (1.0,) * 100, 1.0)
 
 @dataclass
 class Episodes:
-    """An evaluator of drifts; `failed`, of shape (drifts, seeds), says which episodes fail."""
+    """A stand-in for the evaluator; `failed`, of shape (drifts, seeds), says which episodes fail."""
 
     failed: Any
     guarantee: Guarantee = GIVEN
     spent: int = 0
 
     def ordered(self, _: str, point: Point, rows: Sequence[int]) -> dict[int, Outcome]:
-        """Return the outcomes of a drift on the seeds `rows`."""
+        """Return a drift's outcomes on the seeds `rows`."""
         self.spent += len(rows)
         return {row: Outcome(not self.failed[round(point["drift"]), row], 1.0) for row in rows}
 
     def count(self, _: str, count: Count) -> None:
-        """Learn nothing."""
+        """Do nothing with the count."""
 
 
 def chain(draws: np.random.Generator, alike: float, *, shared: bool = True) -> tuple[bool, int, int]:
-    """Run a chain; return whether it errs, its number of episodes, and how many failing drifts it confirms."""
+    """Run a chain; return whether it errs, its episodes, and the number of failing drifts that it confirms."""
     size = LOOKS[-1]
     own, common = draws.random((len(RATES), size)), draws.random(size)
     luck = np.where(draws.random(size) < alike, common, own)
@@ -64,7 +63,7 @@ def chain(draws: np.random.Generator, alike: float, *, shared: bool = True) -> t
 
 
 def main() -> None:
-    """Print a line for each share of seeds that have the same outcome under all drifts."""
+    """Print a line for each share of seeds whose outcome is the same under all drifts."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--chains", type=int, default=4000)
     number = parser.parse_args().chains

@@ -1,11 +1,11 @@
-"""Measure the latency of the language server: first for a whole tree, then after edits of one file.
+"""Measure the latency of the language server: for a whole tree, and after edits of one file.
 
     python benchmarks/editing.py TREE [--files 12] [--seed 0] [--all]
 
-Files are drawn from those with a diagnostic; with --all, from all files. Each file is edited in three ways: a comment
-before a random statement, a statement in a random function, and a statement at the end. Two times are printed, in CPU
-seconds of the linter: until all findings are known, and until the findings of the edited file are known. The language
-server protocol itself adds only milliseconds.
+Files are drawn from those with a diagnostic; with --all, from all files. Each file gets three edits: a comment before a
+random statement, a statement in a random function, and a statement at the end. Two times are printed, in CPU seconds of
+the linter: until all findings are known, and until those of the edited file are. The language server protocol adds only
+milliseconds.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def main() -> None:
 
 
 def edited(text: str, kind: str, rng: random.Random) -> str:
-    """Return a text with an added line; if the file has no function, the statement is added at the end."""
+    """Return a text with one line added; if it has no function, a statement is added at the end."""
     lines = text.split("\n")
     statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
     functions = [node for node in statements if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
@@ -90,7 +90,7 @@ def edited(text: str, kind: str, rng: random.Random) -> str:
 
 
 def _first_line(statement: ast.stmt) -> int:
-    """Return the index of the first line of a statement or its decorators."""
+    """Return the index of a statement's first line, including decorators."""
     decorators: list[ast.expr] = getattr(statement, "decorator_list", [])
     return min([statement.lineno, *(one.lineno for one in decorators)]) - 1
 

@@ -1,8 +1,9 @@
-"""Measure the cost of an episode of the shuttle, uninstrumented and recorded, and of an empty test.
+"""Measure the cost of an episode of the shuttle, plain and recorded, and of an empty test.
 
     python benchmarks/episodes.py [--episodes 200]
 
-Times are CPU times of the process, the minimum of several rounds. The empty test has no world, no node and one sensor.
+Times are CPU times of the process, the minimum of several rounds. The empty test has one sensor, but no world and no
+node.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def test_empty(tarl):
 
 @dataclass
 class Stopwatch:
-    """A pytest plugin that times the episodes of a test instead of running it once; `found` has the milliseconds."""
+    """A pytest plugin that times a test's episodes instead of running the test once; `found` has milliseconds."""
 
     episodes: int
     found: dict[str, float] = field(default_factory=dict)
@@ -69,7 +70,7 @@ class Stopwatch:
 
 
 def timed(test: str, root: Path, episodes: int) -> dict[str, float]:
-    """Return milliseconds per episode of a test, plain and recorded."""
+    """Return the milliseconds per episode of a test, plain and recorded."""
     watch = Stopwatch(episodes)
     with contextlib.redirect_stdout(io.StringIO()):
         pytest.main(["-q", "-p", "no:cacheprovider", "--rootdir", str(root), test], [watch])

@@ -3,17 +3,17 @@
     python benchmarks/fleet.py [--robots 1000] [--missions 100] [--logs 20] [--seed 0]
     python benchmarks/fleet.py --robots 10000 --data DIR     # only write the data set and its recording
 
-Robots drive past ten places, dry or wet, at 40 sites. Four things differ from the recorded world:
+Robots drive past ten places, dry or wet, at 40 sites. There are four differences from the recorded world:
 
-- 1 % of the robots drift: from a random mission on, a place costs reward, and some missions fail there
-- the last release, rolled out to 4 of the sites after two thirds of the missions, costs reward at another place
-- a season: at 2 other sites, steps at wet places cost reward in the last fifth of the missions
-- a repair of the release, rolled out in the last sixth of the missions to every other robot of the 4 sites; it undoes
-  the loss at three of these sites and has no effect at the fourth
+- 1 % of the robots drift: from a random mission on, a place costs reward, and some missions fail there.
+- The last release, which 4 sites get after two thirds of the missions, costs reward at another place.
+- A season: at 2 other sites, steps at wet places cost reward in the last fifth of the missions.
+- A repair of the release: in the last sixth of the missions, every other robot at the 4 sites gets it. It undoes the
+  loss at three of the sites, and has no effect at the fourth.
 
-Groups are formed by version and site, by site, and by site and week. The season is not visible in the first of these
-groupings. For comparison, the script also computes the z-score of the mean reward of each robot and group against the
-recorded episodes; |z| > 3 is an alarm.
+Groups are formed by version and site, by site, and by site and week; the season does not show in the first grouping.
+For comparison, the z-score of each robot's and group's mean reward against the recorded episodes is computed; |z| > 3
+is an alarm.
 """
 
 from __future__ import annotations
@@ -55,14 +55,14 @@ SENSORS = (
     Sensor("place", topic="/place", field="data", low=0, high=PLACES, bins=PLACES),
     Sensor("wet", topic="/wet", field="data"),
 )
-BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and time between two missions of a robot (s)
+BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and time between a robot's missions (s)
 ALARM = 3.0  # minimum |z| of an alarm
-REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site at which it has no effect
+REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site where it has no effect
 
 
 @dataclass(frozen=True)
 class World:
-    """The differences between a mission and the recorded world."""
+    """How a mission differs from the recorded world."""
 
     drift: bool = False
     release: bool = False
@@ -72,7 +72,7 @@ class World:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot, and the missions at which it truly changes. Missions are numbered from 0; -1 means never."""
+    """A robot, and the missions at which it truly changes (counted from 0; -1 means never)."""
 
     number: int
     site: int
@@ -88,11 +88,11 @@ class Robot:
 
     @property
     def first(self) -> int:
-        """Return the robot's first mission that differs from the recorded world; -1 if there is none."""
+        """Return the robot's first mission that differs from the recorded world, or -1."""
         return min((one for one in (self.onset, self.released, self.season) if one >= 0), default=-1)
 
     def world(self, mission: int) -> World:
-        """Return the differences between a mission and the recorded world."""
+        """Return how a mission differs from the recorded world."""
         drift, release, season, repaired = (
             0 <= one <= mission for one in (self.onset, self.released, self.season, self.repaired)
         )
@@ -107,7 +107,7 @@ class Robot:
 
 
 def fleet(robots: int, missions: int, seed: int) -> list[Robot]:
-    """Draw the true changes of each robot."""
+    """Draw each robot's true changes."""
     rng = generator(seed, "fleet/truth")
     drifted = set(rng.choice(robots, max(1, robots // 100), replace=False).tolist())
     onsets = rng.integers(int(0.3 * missions), int(0.7 * missions), robots).tolist()
@@ -125,7 +125,7 @@ def fleet(robots: int, missions: int, seed: int) -> list[Robot]:
 
 
 def drive(rng: np.random.Generator, world: World) -> tuple[Trace, bool]:
-    """Return the trace of a mission and whether it passed."""
+    """Return a mission's trace, and whether it passed."""
     wet = int(rng.random() < 0.3)
     stays = 1 + (rng.random(PLACES) < 0.5)
     place = np.repeat(np.arange(PLACES), stays)
@@ -155,7 +155,7 @@ def recording(path: Path, seed: int) -> Fixture:
 
 
 def rows(robots: list[Robot], missions: int, seed: int) -> Iterator[tuple[str, Row]]:
-    """Yield version and row of every mission."""
+    """Yield the version and row of every mission."""
     for robot in robots:
         rng = generator(seed, f"fleet/{robot.name}")
         for n in range(missions):
@@ -174,7 +174,7 @@ def rows(robots: list[Robot], missions: int, seed: int) -> Iterator[tuple[str, R
 
 
 def stored(to: Store, robots: list[Robot], missions: int, seed: int, where: Origin) -> tuple[int, float]:
-    """Write the data set as `tarl ingest` does, some robots at a time; return its size in bytes and the CPU seconds."""
+    """Write the data set as `tarl ingest` does, a few robots at a time; return its bytes and the CPU seconds."""
     size, spent = 0, 0.0
     for begin in range(0, len(robots), 200):
         parts: dict[tuple[str, str], list[Row]] = {}
@@ -191,7 +191,7 @@ def stored(to: Store, robots: list[Robot], missions: int, seed: int, where: Orig
 
 
 def written_alone(folder: Path, robots: int, missions: int, seed: int) -> None:
-    """Write the data set of a fleet and its recording, `test.npz`."""
+    """Write a fleet's data set and its recording, `test.npz`."""
     folder.mkdir(parents=True, exist_ok=True)
     path, to = folder / "test.npz", store(str(folder))
     recording(path, seed)
@@ -247,7 +247,7 @@ def logs(folder: Path, robots: list[Robot], missions: int, seed: int) -> list[Pa
 
 
 def command(*arguments: object) -> tuple[float, str]:
-    """Run `tarl` and return its CPU seconds and its output."""
+    """Run `tarl`; return its CPU seconds and its output."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     told = subprocess.run(
         [sys.executable, "-m", "pytest_tarl", *map(str, arguments)],
@@ -260,12 +260,12 @@ def command(*arguments: object) -> tuple[float, str]:
 
 
 def peak() -> float:
-    """Return the largest memory that any command used so far, in MB."""
+    """Return the peak memory of all commands so far, in MB."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 
 def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float]) -> None:
-    """Print the robots that TARL named and those with an alarming z-score."""
+    """Print the robots that TARL reported, and those with an alarming z-score."""
     truth = {one.name: one for one in robots}
     named = {"e-BH, missions differ": {*told["drifted"]}, "e-BH, below a bound": {*told["below"]}}
     named["e-BH, either"] = named["e-BH, missions differ"] | named["e-BH, below a bound"]
@@ -299,7 +299,7 @@ def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float])
 
 
 def key_of(by: str, robot: Robot, mission: int, missions: int) -> tuple[str, ...]:
-    """Return the group of a mission."""
+    """Return a mission's group."""
     day = datetime.fromtimestamp(BEGAN + mission * APART, timezone.utc).date()
     values = {
         "version": robot.version(mission, missions),
@@ -310,7 +310,7 @@ def key_of(by: str, robot: Robot, mission: int, missions: int) -> tuple[str, ...
 
 
 def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...], dict[str, float]]:
-    """Return the time of each change, by group and kind of change."""
+    """Return when each change happened, by group and kind of change."""
     found: dict[tuple[str, ...], dict[str, float]] = {}
     for robot in robots:
         for n in range(missions):
@@ -322,7 +322,7 @@ def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...]
 
 
 def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[Robot], missions: int) -> None:
-    """Print how many changed groups the verdict, the onset and the z-score find, and the error of the onsets."""
+    """Print how many changed groups verdict, onset and z-score find, and the error of the onsets."""
     truth = changes(by, robots, missions)
     mean, spread = float(recorded.total.mean()), float(recorded.total.std(ddof=1))
     named = {*told["groups_drifted"], *told["groups_below"]}
@@ -351,7 +351,7 @@ def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[R
 
 
 def found_rest(told: dict[str, Any], robots: list[Robot]) -> None:
-    """Print the clusters, the components of the variance and the effects of the repair."""
+    """Print the clusters, the variance components and the repair's effects."""
     drifted = {one.name for one in robots if one.onset >= 0}
     for one in told["clusters"]:
         inside = len(drifted & {*one["robots"]})

@@ -1,10 +1,10 @@
-"""Fit a cost model of `tarl ingest` and `tarl fleet` to measurements, and extrapolate to a larger fleet.
+"""Fit a cost model of `tarl ingest` and `tarl fleet` to measurements, and extrapolate it to a larger fleet.
 
     python benchmarks/fleet_cost.py [--missions 1e9] [--core-hour 0.05] [--gb-month 0.023]
 
-The measurements are those of docs/benchmarks/fleet.md, section "A fleet". To use other measurements, pass them as
-`--measured 100000:20.1:500 1000000:80.2:1300`. Each measurement gives the number of missions, the CPU seconds of a
-query, and its peak memory (MB). Prices are assumptions in dollars; replace them with those of your provider.
+The measurements are those in docs/benchmarks/fleet.md, section "A fleet". Pass others as `--measured 100000:20.1:500
+1000000:80.2:1300`: number of missions, CPU seconds of a query, and peak memory (MB). Prices are assumptions in dollars;
+replace them by those of your provider.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 MEASURED = ("100000:12.9:571", "400000:29.7:813", "1000000:61.4:1242")
-BYTES = 193  # stored size of a mission without taint lists (bytes)
-INGESTED = 2000  # number of missions ingested per CPU second
-# number of bytes that a worker returns for a mission: the mission's number, and one byte for each score
+BYTES = 193  # stored bytes per mission without taint lists
+INGESTED = 2000  # missions ingested per CPU second
+# bytes that a worker returns per mission: the mission's number, and one byte per score
 SCORES = 26 + 16
-TAKEN = 26 + 25  # number of bytes that a task receives for a mission: its scores and results
-PARALLEL = 0.75  # share of a query's CPU time that runs on workers
-TRANSFER = 1.25e9  # transfer rate between the client and the workers (bytes per second), 10 Gbit/s
+TAKEN = 26 + 25  # bytes that a task receives per mission: scores and results
+PARALLEL = 0.75  # share of a query's CPU time spent on workers
+TRANSFER = 1.25e9  # bytes per second between client and workers (10 Gbit/s)
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def main() -> None:
     print(f"  a query: {hours:,.1f} core hours, {hours * order.core_hour:,.2f} dollars")
     print(f"  of these, on one machine for any size of the cluster: {(1 - PARALLEL) * hours:,.1f} core hours")
     print(f"  memory of the machine that asks: {peak.at(many) / 1000:,.0f} GB")
-    # counts TAKEN twice, because robots and groups are judged in separate tasks
+    # TAKEN counts twice, because robots and groups are judged in separate tasks
     moved = many * (SCORES + 2 * TAKEN)
     print(f"  scores from and to the workers: {moved / 1e9:,.0f} GB, {moved / TRANSFER / 60:,.0f} minutes")
 

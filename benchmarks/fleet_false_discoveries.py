@@ -1,12 +1,12 @@
-"""Measure the false discovery rate of the robots that `tarl fleet` names, over many simulated fleets.
+"""Measure the false discovery rate of the robots that `tarl fleet` reports, over many simulated fleets.
 
     python benchmarks/fleet_false_discoveries.py [--fleets 100] [--robots 100] [--missions 60]
 
-Each fleet has its own recording of the world of benchmarks/fleet.py. In the first half of the fleets, a tenth of the
+Each fleet has its own recording of the world in benchmarks/fleet.py. In the first half of the fleets, a tenth of the
 robots drift from a random mission on: a place costs reward, and 15 % of the missions fail. In the second half, no robot
-drifts, so a fleet's share of false discoveries is 1 if any robot is named. The script draws the statistics of missions
-at random, and judges them with the functions that `tarl fleet` calls. For comparison, the script also computes the
-z-score of each robot's mean reward; |z| > 3 is an alarm.
+drifts, so a fleet's share of false discoveries is 1 if any robot is reported. The missions' statistics are random
+numbers, judged by the functions that `tarl fleet` calls. For comparison, the z-score of each robot's mean reward is
+computed; |z| > 3 is an alarm.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from pytest_tarl.monitoring.scores import Scale, binned
 from pytest_tarl.seeds import generator
 
 Q = 0.05
-SHARE = 10  # one robot in `SHARE` is affected by the drift
+SHARE = 10  # one robot in `SHARE` drifts
 METHODS = ("missions differ", "below a bound", "z-score")
 
 
 def drawn(
     rng: np.random.Generator, drifted: np.ndarray[tuple[int], np.dtype[np.bool_]], cells: int
 ) -> Sample:
-    """Return missions like those of `drive` in benchmarks/fleet.py; in the missions `drifted`, a place costs reward."""
+    """Return missions like those of `drive` in benchmarks/fleet.py; in the `drifted` ones, a place costs reward."""
     count = len(drifted)
     wet = rng.random(count) < 0.3
     stays = rng.random((count, PLACES)) < 0.5
@@ -76,7 +76,7 @@ def scored(sample: Sample, scale: Scale, missions: int) -> Scores:
 
 
 def named(fixture: Fixture, sample: Sample, count: int, missions: int) -> dict[str, set[int]]:
-    """Return the robots that each method names."""
+    """Return the robots that each method reports."""
     first = begun(fixture, alpha=Q, seed=0)
     names = [str(number) for number in range(count)]
     ends: Ints = np.arange(1, count + 1) * missions

@@ -1,4 +1,4 @@
-"""Restrict a process that runs untrusted code: it may use no programs, no network and no files outside a folder."""
+"""Restrict a process that runs untrusted code: no programs, no network, and no files outside a folder."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 
 def warm_up() -> None:
-    """Import the modules that every test needs, so that forked processes need not import them."""
+    """Import the modules that every test needs, so that forked processes do not have to."""
     import numpy  # noqa: F401
     import pytest  # noqa: F401
 
@@ -46,7 +46,7 @@ def warm_up() -> None:
 
 
 def close_all_but(folder: Path) -> None:
-    """From now on, raise PermissionError for every operation of this process that has effects outside a folder."""
+    """From now on, raise PermissionError for every operation that has effects outside a folder."""
     inside = (str(folder.resolve()) + os.sep, os.devnull)
     standard = {0, 1, 2}
 

@@ -3,7 +3,7 @@
     python benchmarks/foreign_listings.py FOLDER OUT      # FOLDER: one folder per unpacked package
 
 A listing is a fenced or indented block of Python code in a Markdown, reStructuredText or metadata file. Each package
-with such listings is copied to OUT, with the listings in its folder `listings`. Nothing is executed.
+that has such listings is copied to OUT, with the listings in its folder `listings`. Nothing is executed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ INDENTED = re.compile(
 
 
 def listings(package: Path) -> Iterator[tuple[str, str]]:
-    """Yield the page and text of each listing that creates a node when it is run; each text once."""
+    """Yield page and text of each listing that creates a node when run; each text once."""
     seen: set[str] = set()
     for page in sorted(package.rglob("*")):
         if not page.is_file() or page.is_symlink() or not (page.suffix in PAGES or page.name in METADATA):
@@ -52,7 +52,7 @@ def _makes_node(code: str) -> bool:
 
 
 def main() -> None:
-    """Write the listings and print their number by package."""
+    """Write the listings, and print how many each package has."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("folder", type=Path, help="folder of unpacked packages, one folder per package")
     parser.add_argument("out", type=Path, help="folder for copies of the packages with listings")

@@ -1,4 +1,4 @@
-"""Messages as a new user would write them: every field has some value, and images, scans and clouds are complete."""
+"""Messages as a new user would write them: every field has a value, and images, scans and clouds are complete."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import math
 import struct
 from typing import Any
 
-SOME = 3  # number of elements in an array of variable length
+SOME = 3  # number of elements in arrays of variable length
 
 
 def publish_to_all(tarl: Any, step: int) -> int:
-    """Publish a message on every topic that a node subscribes to; return their number."""
+    """Publish a message on every topic that a node subscribes to; return how many."""
     sent = 0
     for topic in tarl.bus.topics():
         kinds = [one.message_type for one in topic.subscriptions if one.message_type is not None]
@@ -21,14 +21,14 @@ def publish_to_all(tarl: Any, step: int) -> int:
 
 
 def filled(kind: Any, step: int) -> Any:
-    """Return a message of the class `kind` with values that change slightly from step to step."""
+    """Return a message of class `kind` whose values change slightly from step to step."""
     message = kind()
     _fill(message, step, 0)
     return message
 
 
 def fields(message: Any) -> dict[str, str]:
-    """Return the types of a message's fields, by name."""
+    """Return a message's field types by name."""
     if hasattr(message, "_slot_types"):
         return dict(zip(message.__slots__, message._slot_types, strict=True))
     return dict(message.get_fields_and_field_types())
@@ -53,7 +53,7 @@ def _fill(message: Any, step: int, depth: int) -> None:
 
 
 def fields_of(value: Any) -> bool:
-    """Return whether a value is a message with fields to fill; a time is not."""
+    """Return whether a value is a message with fields to fill, which a time is not."""
     kind = type(value).__name__
     return (
         kind not in ("Time", "Duration")

@@ -3,11 +3,11 @@
     python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--names FILE] [--counted N --seed N]
                                        [--keep SCRATCH] [--json FILE]
 
-Each FOLDER contains checkouts, one folder per repository. The checkouts are copied to a scratch folder. Each script
-gets a minimal simulation test, which starts the script and then publishes messages on the topics that it subscribes to,
-for a few virtual seconds. Each test runs in its own process with a time limit and restricted access: no programs, no
-network, no files outside the scratch folder. Scripts in Python 2, tests, and scripts that need a GPU library or a
-device's SDK that is not installed are counted separately, with the reason.
+Each FOLDER has checkouts, one folder per repository, which are copied to a scratch folder. Each script gets a minimal
+simulation test, which starts it and then publishes messages on its subscribed topics for a few virtual seconds. Each
+test runs in its own process, with a time limit and without access to programs, the network or files outside the scratch
+folder. Some scripts are counted separately, with the reason: scripts in Python 2, tests, and scripts that need a GPU
+library or a device's SDK that is not installed.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ import foreign_closed
 from foreign_reasons import set_apart, why
 from foreign_scripts import Script, scripts
 
-LIMIT = 60  # processor time of a test (s); unlike real time, it does not depend on the load of the machine
+LIMIT = 60  # processor time of a test (s), which, unlike real time, does not depend on the machine's load
 WAITING = 600  # real time of a test (s)
 TEST = """
 import json
@@ -66,7 +66,7 @@ def test_node(tarl):
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of one script."""
+    """The result of a script."""
 
     name: str
     apart: str = ""
@@ -78,7 +78,7 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """Return the furthest stage that the script reached."""
+        """Return the last stage that the script reached."""
         if self.apart:
             return "apart"
         if not self.starts:
@@ -91,7 +91,7 @@ class Outcome:
 
 
 class Told:
-    """A pytest plugin that stores the reason for a failure."""
+    """A pytest plugin that stores why a test failed."""
 
     def __init__(self) -> None:
         self.text = ""
@@ -162,7 +162,7 @@ def _child(script: Script, test: Path, said: Path) -> None:
 
 
 def checkouts(folders: Sequence[Path], scratch: Path) -> list[Path]:
-    """Copy the repositories below the folders, each as its own git repository; return the copies."""
+    """Copy the repositories in the folders, each as its own git repository; return the copies."""
     copies = []
     for original in sorted(one for folder in folders for one in folder.iterdir() if one.is_dir()):
         copy = scratch / original.name

@@ -1,4 +1,4 @@
-"""Classify failures of node scripts: find the missing feature, or the reason to count the script separately."""
+"""Classify failures of node scripts: the missing feature, or the reason to count the script separately."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from foreign_scripts import DISTRIBUTED
 
-KINDS = {  # pattern in the message of a failed test → name of the missing feature
+KINDS = {  # pattern in a failed test's message → name of the missing feature
     r"No module named '([\w.]+)'": "module {0}",
     r"cannot import name '(\w+)' from '([\w.]+)'": "name {1}.{0}",
     r"([\w.]+) is not in the in-process ROS": "ROS API {0}",
@@ -32,7 +32,7 @@ PYTHON_2 = re.compile(
 
 
 def why(fails: str) -> str:
-    """Return the missing feature that the message of a failure names."""
+    """Return the missing feature that a failure's message names."""
     for pattern, name in KINDS.items():
         found = re.search(pattern, fails)
         if found is not None:
@@ -41,7 +41,7 @@ def why(fails: str) -> str:
 
 
 def set_apart(fails: str, repository: Path) -> str:
-    """Return the reason to count a script separately: it needs Python 2, a display, or an unavailable package."""
+    """Return why to count a script separately: it needs Python 2, a display, or an unavailable package."""
     old = PYTHON_2.search(fails)
     if old is not None:
         return f"Python 2 only ({old[1]})"

@@ -1,4 +1,4 @@
-"""Find the node scripts of checked-out repositories, and say which of them are counted separately.
+"""Find the node scripts in checked-out repositories, and which of them are counted separately.
 
 Nothing is executed.
 """
@@ -20,7 +20,7 @@ HARDWARE = frozenset({"RPi", "alsaaudio", "baxter_interface", "naoqi", "openhriv
                       "pr2_ik", "hironx_client", "rtm", "OpenHRP", "hrpsys"})  # fmt: skip
 TESTING = frozenset({"unittest", "rostest", "pytest", "rosunit", "launch_testing", "nose"})
 DISPLAY = frozenset({"PyQt5", "PySide", "PySide2", "python_qt_binding", "Tkinter", "tkinter", "wx"})
-DISTRIBUTED = frozenset(  # packages of `ros-noetic-desktop-full`, `ros-humble-desktop` and MoveIt
+DISTRIBUTED = frozenset(  # packages in `ros-noetic-desktop-full`, `ros-humble-desktop` and MoveIt
     {"actionlib", "control_msgs", "cv_bridge", "diagnostic_updater", "dynamic_reconfigure", "genpy", "image_geometry",
      "interactive_markers", "laser_assembler", "laser_geometry", "message_filters", "moveit_commander", "moveit_msgs",
      "pcl_msgs", "rclpy", "rosbag", "rosgraph", "roslib", "rosmsg", "rosnode", "rosparam", "rospy", "rosservice",
@@ -35,7 +35,7 @@ SKIPPED = frozenset({"launch", "test", "tests", "build", "install", "devel", "ta
 
 @dataclass(frozen=True)
 class Script:
-    """A node script: its file, the function of its entry point, and the reason to count it separately, if any."""
+    """A node script: its file, the function of its entry point, and why it is counted separately, if it is."""
 
     repository: Path
     path: Path
@@ -44,15 +44,15 @@ class Script:
 
     @property
     def name(self) -> str:
-        """Return the path below the folder of repositories."""
+        """Return the path relative to the folder of repositories."""
         return f"{self.repository.name}/{self.path.relative_to(self.repository)}"
 
     @property
     def package(self) -> Path:
-        """Return the folder of the script's ROS package, or else the folder around its Python package.
+        """Return the folder of the script's ROS package or, without one, the folder around its Python package.
 
-        A test has to be outside the script's Python package: pytest imports the `__init__.py` of the folders above a
-        test before the in-process ROS is installed.
+        A test must be outside the script's Python package: pytest imports the `__init__.py` of the folders above a test
+        before the in-process ROS is installed.
         """
         inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
         packages = [place for place, one in enumerate(inside) if (one / "__init__.py").is_file()]
@@ -68,7 +68,7 @@ def scripts(repository: Path) -> list[Script]:
 
 
 def files(repository: Path) -> Iterator[Path]:
-    """Yield the Python files outside folders for launch files and tests."""
+    """Yield the Python files outside the folders for launch files and tests."""
     for path in repository.rglob("*"):
         parts = path.relative_to(repository).parts
         if not path.is_file() or path.is_symlink() or not SKIPPED.isdisjoint(parts[:-1]) or ".git" in parts:
@@ -84,7 +84,7 @@ def _first_line(path: Path) -> bytes:
 
 
 def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
-    """Yield the file and the function of each console script in `setup.py`, `setup.cfg` and an unpacked wheel."""
+    """Yield file and function of each console script in `setup.py`, `setup.cfg` and an unpacked wheel."""
     for setup in [*repository.rglob("setup.py"), *repository.rglob("setup.cfg")]:
         for module, function in ENTRY.findall(setup.read_text("utf-8", errors="replace")):
             yield setup.parent.joinpath(*module.split(".")).with_suffix(".py"), function
@@ -123,7 +123,7 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
 
 
 def without_texts(tree: ast.AST) -> str:
-    """Return the code of a file without its string literals and comments."""
+    """Return a file's code without string literals and comments."""
     return ast.unparse(_Blank().visit(copy.deepcopy(tree)))
 
 
@@ -138,7 +138,7 @@ class _Blank(ast.NodeTransformer):
 
 
 def needs_arguments(tree: ast.AST) -> bool:
-    """Return whether a file defines a command line with required arguments by means of `argparse`."""
+    """Return whether a file defines a command line with required arguments, using `argparse`."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not ast.unparse(node.func).endswith(".add_argument"):
             continue
@@ -153,7 +153,7 @@ def needs_arguments(tree: ast.AST) -> bool:
 
 
 def makes_node(path: Path, seen: set[Path]) -> bool:
-    """Return whether a module, or a module of the same package that it imports, makes a node."""
+    """Return whether a module makes a node, itself or through modules that it imports from its package."""
     if path in seen or not path.is_file():
         return False
     seen.add(path)

@@ -1,9 +1,9 @@
-"""A pytest plugin that collects tests once, then runs chosen tests in forks, with or without a fault in the code.
+"""A pytest plugin that collects tests once, then runs chosen ones in forks, with or without a fault in the code.
 
-A fork changes the functions of the file with the fault, so nothing is imported again. The fork behaves like a fresh
-process, provided that no changed line ran during the imports. The caller has to check this: the results of `measured`
-list the lines that ran during the imports under `IMPORTED`. Processes that a test starts read the changed file from the
-disk. Needs `os.fork`.
+A fork changes the functions in the file with the fault, so nothing is imported again. It behaves like a fresh process,
+provided that no changed line ran during the imports. The caller has to check this: the results of `measured` list the
+lines that ran during imports under `IMPORTED`. Processes that a test starts read the changed file from disk. Needs
+`os.fork`.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from reach_marks import Marks, marks
 from reached_lines import Reached
 from warm_pytest import ended
 
-CHANNELS = "FORKED_TESTS"  # environment variable with the two ends of pipes, "read,write"
-IMPORTED = "(import)"  # stands for the import of all modules in lists of the tests that reach a line
-UNCHANGED = 77  # exit status if a fault cannot be put into the functions of the process
-SLOWEST = 1.0  # CPU seconds after which a measured test is interrupted
-# limits for one measured file of tests, as multiples of SLOWEST: CPU seconds, and wall seconds on a busy machine
+CHANNELS = "FORKED_TESTS"  # environment variable with the ends of two pipes, "read,write"
+IMPORTED = "(import)"  # in lists of the tests that reach a line: the import of all modules
+UNCHANGED = 77  # exit status if a fault cannot be put into the functions of this process
+SLOWEST = 1.0  # a measured test is interrupted after this many CPU seconds
+# limits for measuring one test file, as multiples of SLOWEST: CPU seconds, and wall seconds on a busy machine
 MOST_OF_FILE, LONGEST_FILE = 2.5, 45.0
 
 
 @dataclass(frozen=True)
 class Ran:
-    """Result of a fork: its exit status ("timeout" if it was killed), and the last test that began, if not all passed.
+    """The result of a fork: exit status ("timeout" if killed), and the last test begun, if not all passed.
 
-    `started` are the tests that began, in order.
+    `started` has the tests that began, in order.
     """
 
     status: str
@@ -61,10 +61,10 @@ class Forks:
         self.tests: list[str] = json.loads(first)
 
     def __call__(self, tests: Sequence[str], limit: float, path: str = "", line: int = 0) -> Ran:
-        """Run tests until one fails, using the current text of the file `path`.
+        """Run tests until one fails, with the current text of the file `path`.
 
-        `line` is the first line that differs from the imported text. The fork is killed after `limit` seconds, with the
-        processes that it started.
+        `line` is the first line that differs from the imported text. The fork, and the processes that it started, are
+        killed after `limit` seconds.
         """
         status, lines = self._asked(
             {"tests": [*tests], "limit": limit, "path": path, "line": line, "slowest": 0.0}
@@ -75,10 +75,10 @@ class Forks:
         return Ran(status, failed, started)
 
     def measured(self, slowest: float = SLOWEST) -> Reached:
-        """Run all tests once, one fork per file, and return the lines that they reach.
+        """Run all tests once, in one fork per file, and return the lines that they reach.
 
-        Needs a pytest process with marks (see `reach_marks.py`). A test is interrupted after `slowest` CPU seconds of
-        its process. When a file has taken MOST_OF_FILE times as many, its remaining tests are left out.
+        The pytest process must have marks (see `reach_marks.py`). A test is interrupted after `slowest` CPU seconds.
+        Once a file has taken MOST_OF_FILE times as many, its remaining tests are skipped.
         """
         files: dict[str, list[str]] = {}
         for test in self.tests:
@@ -127,9 +127,9 @@ def _add(found: Reached, lines: Sequence[Mapping[str, Any]]) -> None:
 
 @contextmanager
 def forks(folder: Path, environment: Mapping[str, str], arguments: Sequence[str]) -> Iterator[Forks]:
-    """Start pytest with the arguments in the folder, and end it afterwards.
+    """Start pytest with these arguments in the folder, and end it afterwards.
 
-    Raises EOFError if pytest ends during the collection.
+    Raise EOFError if pytest ends during collection.
     """
     (read, asking), (answering, write) = os.pipe(), os.pipe()
     with tempfile.TemporaryDirectory(prefix="forks-") as place:
@@ -176,12 +176,12 @@ def forks(folder: Path, environment: Mapping[str, str], arguments: Sequence[str]
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop(session: pytest.Session) -> bool | None:
-    """Run the requested tests until the pipe is closed; without pipes, let pytest run as usual."""
+    """Run requested tests until the pipe is closed; without pipes, let pytest run as usual."""
     channels = os.environ.pop(CHANNELS, "")
     if not channels:
         return None
     read, write = map(int, channels.split(","))
-    # Tests that start pytest themselves are slow, so they come last: the last tests of a file may be left out.
+    # tests that start pytest are slow, so they come last: a file's last tests may be skipped
     quick_first = sorted(session.items, key=lambda item: "pytester" in getattr(item, "fixturenames", ()))
     items = {item.nodeid: item for item in quick_first}
     known = functions()
@@ -202,7 +202,7 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 
 
 def functions() -> dict[str, list[FunctionType]]:
-    """Return the Python functions of this process by file."""
+    """Return this process's Python functions by file."""
     found: dict[str, list[FunctionType]] = {}
     for one in gc.get_objects():
         if type(one) is FunctionType:
@@ -211,10 +211,10 @@ def functions() -> dict[str, list[FunctionType]]:
 
 
 def changed(known: Sequence[FunctionType], text: bytes, path: str, line: int) -> int:
-    """Replace the code of a file's functions by that of the file's new text; return the number of changed functions.
+    """Replace the code of a file's functions by that of its new text; return how many changed.
 
-    `line` is the first line that differs: functions below it may have moved, but cannot have changed. Raises ValueError
-    if a function no longer uses the same variables of its enclosing functions.
+    `line` is the first line that differs; functions below it may have moved, but not changed. Raise ValueError if a
+    function no longer uses the same variables of its enclosing functions.
     """
     codes: dict[tuple[str, int], list[CodeType]] = {}
     waiting = [compile(text, path, "exec", dont_inherit=True)]
@@ -261,7 +261,7 @@ def _run(
 
 
 def _inserted(known: Mapping[str, Sequence[FunctionType]], request: Mapping[str, Any]) -> bool:
-    """Put the fault of a request, if any, into the functions of this process; return whether this succeeds."""
+    """Put a request's fault, if any, into this process's functions; return whether this succeeds."""
     path = request["path"]
     if not path:
         return True
@@ -277,7 +277,7 @@ def _tested(
     measured: Marks | None,
     slowest: float,
 ) -> int:
-    """Run the tests; return 1 at the first failure or, if tests are measured, when the file has taken too long."""
+    """Run the tests; return 1 at the first failure or, when measuring, once the file has taken too long."""
     failures: list[str] = []
 
     class Reports:
@@ -318,5 +318,5 @@ def _too_slow(_number: int, _frame: FrameType | None) -> None:
 
 
 def _told(test: str, passed: bool, seconds: float, lines: Mapping[str, Sequence[int]]) -> str:
-    """Return a test's result as one line of JSON for the output of the fork."""
+    """Return a test's result as a line of JSON for the fork's output."""
     return json.dumps({"test": test, "passed": passed, "seconds": seconds, "lines": [*lines.items()]})

@@ -1,4 +1,4 @@
-"""Measure the CPU time of judging formulas per episode: `python benchmarks/formulas.py`."""
+"""Measure the CPU time of judging formulas, per episode: `python benchmarks/formulas.py`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CAP = 100.0
 
 
 def episode(text: str, steps: int) -> Judge:
-    """Return a judge of one episode with a new random value in each step."""
+    """Return a judge for one episode with a new random value in each step."""
     judge = Judge(("gap",), [formula("benchmark", text, ("gap",))])
     draws = random.Random(steps)
     for step in range(1, steps + 1):
@@ -31,7 +31,7 @@ def episode(text: str, steps: int) -> Judge:
 
 
 def milliseconds(text: str, steps: int, *, rewarding: bool) -> float:
-    """Return the minimum CPU time of judging an episode (ms), with step rewards if `rewarding`."""
+    """Return the minimum CPU time (ms) to judge an episode, including step rewards if `rewarding`."""
     least = float("inf")
     for _ in range(ROUNDS):
         judge = episode(text, steps)

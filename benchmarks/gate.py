@@ -1,11 +1,11 @@
-"""Measure how often the verdict is a false alarm or finds a drift, and how well the region fits, in many repetitions.
+"""Measure, in many repetitions, how often the verdict is a false alarm or finds a drift, and how well the region fits.
 
     python benchmarks/gate.py [--repetitions 500] [--worlds track lane …] [--sizes 0 0.2 1]
 
-The worlds are eight small ones and the two examples. For each world, each way in which a sensor can show the drift, and
-each size of the drift, a pool of missions is simulated. Pairs of samples (designed, drifted) are then drawn repeatedly
-from the pools and compared. There are two reference methods: a two-sample Kolmogorov-Smirnov test on total reward, and
-an alarm if the mean total reward falls by more than 10 %.
+The worlds are eight small ones and the two examples. A pool of missions is simulated for each world, each way in which
+a sensor can show the drift, and each size of the drift. Pairs of samples (designed, drifted) are then drawn repeatedly
+from the pools and compared. Two reference methods run on the same samples: a two-sample Kolmogorov-Smirnov test of the
+total reward, and an alarm if the mean total reward falls by more than 10 %.
 """
 
 from __future__ import annotations
@@ -31,26 +31,26 @@ from pytest_tarl.sensors import Cell
 ALPHA = 0.05
 SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
 OFFLINE, ONLINE = 200, 40
-# number of missions in each pool: designed missions (True), drifted missions (False)
+# number of missions per pool: designed (True), drifted (False)
 POOLED = {True: 3000, False: 1500}
 POOLED_EXAMPLE = {True: 1000, False: 300}
 
 
 @dataclass(frozen=True)
 class Seen:
-    """Results of one comparison and of the reference methods on the same samples."""
+    """The results of one comparison, and of the reference methods on the same samples."""
 
     degraded: bool
     drift: bool
     kolmogorov: bool
     threshold: bool
-    held: float  # share of the visited cells changed by the drift that are in the reported region
+    held: float  # of the visited cells that the drift changes, the share in the reported region
     others: int  # number of cells in the reported region that the drift does not change
 
 
 @dataclass(frozen=True)
 class Row:
-    """The repetitions for one world, one way to show its drift, and one size of the drift."""
+    """The repetitions for one world, one way of showing its drift, and one size of the drift."""
 
     world: str
     mode: str
@@ -58,19 +58,19 @@ class Row:
     seen: tuple[Seen, ...]
 
     def share(self, what: str) -> float:
-        """Return the share of repetitions in which a result was positive."""
+        """Return the share of repetitions with a positive result."""
         return fmean(getattr(one, what) for one in self.seen)
 
 
 def pools(world: str, mode: Mode, sizes: Sequence[float]) -> dict[float, Pool]:
-    """Return a pool for every size of the drift."""
+    """Return a pool for each size of the drift."""
     if world in WORLDS:
         return {size: simulated(world, mode, size, POOLED[size == 0.0]) for size in sizes}
     return {size: recorded(world, size, POOLED_EXAMPLE[size == 0.0]) for size in sizes}
 
 
 def rows(world: str, mode: Mode, repetitions: int, sizes: Sequence[float] = SIZES) -> list[Row]:
-    """Compare repeatedly, at every size of the drift."""
+    """Compare repeatedly, at each size of the drift."""
     pool = pools(world, mode, sizes)
     designed = pool[0.0].sample
     found = []
@@ -79,7 +79,7 @@ def rows(world: str, mode: Mode, repetitions: int, sizes: Sequence[float] = SIZE
         for repetition in range(repetitions):
             draws = seeds.generator(repetition, f"{world}/{mode}/{size}")
             order = draws.permutation(designed.episodes)
-            # Without a drift, both samples come from the same pool; they must not share a mission.
+            # without a drift, both samples come from the same pool and must not share a mission
             chosen = order[-ONLINE:] if size == 0.0 else draws.permutation(there.sample.episodes)[:ONLINE]
             recordings = drawn(designed, order[:OFFLINE]), drawn(there.sample, chosen)
             judged.append(_judged(*recordings, there.changed, draws))
@@ -128,7 +128,7 @@ def summary(found: Sequence[Row]) -> str:
 
 
 def main() -> None:
-    """Compare in every world, with two processes in parallel."""
+    """Run the comparisons in every world, with two processes in parallel."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--repetitions", type=int, default=500)
     parser.add_argument("--workers", type=int, default=2)

@@ -22,7 +22,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "examples"
 
 @dataclass(frozen=True)
 class Example:
-    """A test from the examples; its drift ranges from 1 (as designed) down to the value in the marker."""
+    """A test from the examples; its drift ranges from 1 (as designed) down to the marker's value."""
 
     test: str
     mode: Mode  # how the sensors of the example show the drift
@@ -57,14 +57,14 @@ class Recording:
 
 
 def recorded(name: str, size: float, episodes: int) -> Pool:
-    """Run missions of an example; the cells that its drift changes are not known."""
+    """Run missions of an example; which cells its drift changes is not known."""
     example = EXAMPLES[name]
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / name
         shutil.copytree(FOLDER / name, copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
         recording = Recording(size, episodes)
         test = str(copy / example.test)
-        # the option -q belongs to the terminal plugin
+        # -q belongs to the terminal plugin
         plain = ["-p", "no:cacheprovider", "-p", "no:terminal"]
         pytest.main([*plain, "--rootdir", str(copy), test], [recording])
     return Pool(recording.found[0], frozenset())

@@ -1,4 +1,4 @@
-"""Pools of episodes to draw from: many missions of one world at one size of a drift, as statistics."""
+"""Pools of episodes to draw from: the statistics of many missions of one world at one size of a drift."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MODES: tuple[Mode, ...] = ("hidden", "harmless", "novel")
 
 @dataclass(frozen=True)
 class Pool:
-    """Episodes of one world at one size of its drift; `changed` are the cells that the drift changes.
+    """Episodes of a world at one size of its drift; `changed` has the cells that the drift changes.
 
-    A cell counts as changed if the drift acts in at least half of the steps there.
+    A cell counts as changed if the drift is active in at least half of the steps there.
     """
 
     sample: Sample
@@ -32,10 +32,10 @@ class Pool:
 
 
 def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
-    """Run missions of one of the small worlds, with the drift shown in one of three ways.
+    """Run missions of a small world in which a sensor shows, in one of three ways, where the drift is active.
 
-    A sensor can show where the drift acts. It is either hidden from the comparison, or harmless (it has the same values
-    in both worlds), or novel (it is true only where the drift acts).
+    The sensor is hidden (not part of the comparison), harmless (with the same values in both worlds), or novel (true
+    only where the drift is active).
     """
     samples, exposed = [], dict[Cell, list[bool]]()
     for index in range(episodes):
@@ -49,7 +49,7 @@ def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
 
 
 def seen(log: Log, mode: Mode, drift: float) -> list[Cell]:
-    """Return the cell of each step as the comparison receives it."""
+    """Return each step's cell as seen by the comparison."""
     if mode == "hidden":
         return list(log.bins)
     visible = mode == "harmless" or drift > 0

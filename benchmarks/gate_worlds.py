@@ -1,7 +1,7 @@
-"""Eight small simulated worlds for gate.py: sensor bins, rewards, and where a drift acts.
+"""Eight small simulated worlds for gate.py: sensor bins, rewards, and where a drift is active.
 
-The drift goes from 0 (as designed) to 1. For each step, a mission yields the bins of its sensors, the reward, and
-whether the drift acts at this place or time. Without a drift, the last value says where it would act.
+The drift ranges from 0 (as designed) to 1. For each step, a mission gives its sensors' bins, the reward, and whether
+the drift is active at this place or time (or would be, if it is 0).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def binned(value: float, low: float, high: float, bins: int) -> int:
 
 
 def track(rng: Generator, drift: float) -> Log:
-    """Deliver over a straight track; in 60 % of the missions soft ground takes up to 90 % of the speed."""
+    """Deliver over a straight track; in 60 % of the missions, soft ground takes up to 90 % of the speed."""
     log, x, v = Log(), rng.uniform(0.9, 1.1), 0.0
     soft = rng.random() < 0.6
     noise = rng.normal(0.0, 0.01, 75)
@@ -59,7 +59,7 @@ def track(rng: Generator, drift: float) -> Log:
 
 
 def greenhouse(rng: Generator, drift: float) -> Log:
-    """Hold 22 °C over a day with a vent; the drift weakens the vent in the afternoon by up to 80 %."""
+    """Hold 22 °C for a day with a vent, which the drift weakens in the afternoon by up to 80 %."""
     log, inside = Log(), rng.normal(20.0, 1.0)
     day = rng.normal(18.0, 1.5)
     noise = rng.normal(0.0, 0.25, 96)
@@ -92,7 +92,7 @@ def lane(rng: Generator, drift: float) -> Log:
 
 
 def gripper(rng: Generator, drift: float) -> Log:
-    """Lift twelve boxes by suction; the drift weakens the grip on rough cardboard, one of the four kinds of boxes."""
+    """Lift twelve boxes by suction; the drift weakens the grip on rough cardboard, one of four kinds of boxes."""
     log = Log()
     for _ in range(12):
         kind, tries = int(rng.integers(4)), 0
@@ -121,7 +121,7 @@ def climb(rng: Generator, drift: float) -> Log:
 
 
 def convoy(rng: Generator, drift: float) -> Log:
-    """Follow a lead car; the drift, a wet road, weakens braking by up to 60 %."""
+    """Follow a lead car; the drift is a wet road, which weakens braking by up to 60 %."""
     log, gap, closing, lead = Log(), rng.normal(20.0, 2.0), 0.0, 0.0
     for _ in range(120):
         lead = 0.9 * lead + rng.normal(0.0, 0.5)
@@ -139,7 +139,7 @@ def convoy(rng: Generator, drift: float) -> Log:
 
 
 def gatherer(rng: Generator, drift: float) -> Log:
-    """Walk across a 6 × 6 grid to the far corner; under the drift, the ground in one corner is slippery."""
+    """Walk across a 6 × 6 grid to the far corner; the drift makes the ground in one corner slippery."""
     log, x, y = Log(), 0, 0
     for _ in range(60):
         cell, slippery = (x, y), x >= 3 and y >= 2
@@ -160,7 +160,7 @@ def _towards(x: int, y: int, rng: Generator) -> tuple[int, int]:
 
 
 def pipe(rng: Generator, drift: float) -> Log:
-    """Crawl through a pipe and clean it; under the drift, a wheel slips from step 50 on."""
+    """Crawl through a pipe and clean it; with the drift, a wheel slips from step 50 on."""
     log, x = Log(), 0.0
     for step in range(100):
         late = step >= 50

@@ -1,11 +1,11 @@
-"""Compare the results that TARL finds for random Python programs with those that Python computes.
+"""Compare the values that TARL finds in random Python programs with those that Python computes.
 
     python benchmarks/interpreted_programs.py [--count 2000] [--seed 0] [--show 3]
 
 Each program uses the parts of Python with which launch files compute values: regular expressions, collections,
-itertools, data classes, enumerations, classes with special methods, generators, patterns of `match`, exceptions, paths.
-All values of a program are constant, so TARL must know each result, and it must equal that of Python. Python executes
-only programs that this script makes.
+itertools, data classes, enumerations, classes with special methods, generators, `match` patterns, exceptions and paths.
+All values of a program are constant, so TARL must know each result, and it must equal Python's. Only programs that this
+script makes are executed.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ class Programs(Expressions):
 
 
 def compared(text: str, folder: Path) -> tuple[int, list[str]]:
-    """Return the number of results of a program, and a line for each result on which TARL and Python differ.
+    """Return a program's number of results, and a line for each result on which TARL and Python differ.
 
-    Raises SyntaxError, and any exception that the program raises.
+    Raise SyntaxError, and any exception that the program raises.
     """
     real: dict[str, Any] = {"__name__": "__main__"}
     exec(compile(text, "program", "exec"), real)  # noqa: S102 - only programs of this script

@@ -1,7 +1,7 @@
 """Run labelled real nodes in the in-process ROS; print whether each starts and publishes, and which steps are recorded.
 
 Run `python benchmarks/labelled_nodes.py LABELS.json CHECKOUTS`, where CHECKOUTS contains `owner__repository/path` for
-each labelled node. Nothing is downloaded, and nothing is written below CHECKOUTS. Each node gets a test in a scratch
+each labelled node. Nothing is downloaded, and nothing is written to CHECKOUTS. Each node gets a test in a scratch
 folder, which runs with `--tarl-record`. Nodes that need OpenCV run only if `cv2` can be imported.
 """
 
@@ -37,7 +37,7 @@ def test_node(tarl, monkeypatch, tmp_path):
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a node: its numbers of taint `lists` and of `sites` on them, the `missing` steps, or why it failed."""
+    """The result of a node: its numbers of taint `lists` and `sites`, the `missing` steps, or why it failed."""
 
     name: str
     api: str
@@ -77,7 +77,7 @@ def run(label: dict[str, Any], checkouts: Path) -> Outcome:
 
 
 def record(outcome: Outcome, node: Path, folder: Path) -> Outcome:
-    """Record a test of the node in a scratch folder and read the recording."""
+    """Record a test of the node in a scratch folder, and read the recording."""
     here = str(Path(__file__).parent)
     (folder / "test_it.py").write_text(TEST.format(here=here, node=str(node), name=node.name))
     command = [sys.executable, "-m", "pytest", "-q", "-s", "-p", "no:cacheprovider", "test_it.py"]
@@ -98,7 +98,7 @@ def record(outcome: Outcome, node: Path, folder: Path) -> Outcome:
 
 
 def read(outcome: Outcome, ran: str, path: Path) -> Outcome:
-    """Return which steps of the node a recording contains."""
+    """Return which of the node's steps are in a recording."""
     from pytest_tarl.learning import fixture as fixtures
     from pytest_tarl.learning.tables import START
 
@@ -122,7 +122,7 @@ def _heard(ran: str) -> str:
 
 
 def _why(output: str) -> str:
-    """Return the sentence below the heading of the failed test in the output of pytest."""
+    """Return the sentence below the failed test's heading in pytest's output."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     headline = next((i for i, line in enumerate(lines) if line.strip("_ ") == "test_node"), -2)
     return re.sub(r"/\S*/", "", lines[headline + 1] if lines else "?")[:220].replace("|", "/")

@@ -1,4 +1,4 @@
-"""The worlds for the nodes of benchmarks/labelled_nodes.py: each publishes the topics that its node subscribes to."""
+"""Worlds for the nodes of benchmarks/labelled_nodes.py: each publishes the topics that its node subscribes to."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Robot:
         self.x = self.y = self.yaw = 0.0
 
     def move(self, bus: Any, dt: float) -> None:
-        """Move for one step and publish the odometry."""
+        """Move for one step, and publish the odometry."""
         command = bus.latest(self._topic)
         if command is not None:
             self.yaw += command.angular.z * dt
@@ -82,7 +82,7 @@ class Robot:
 
 
 def _drive(tarl: Any, steps: int, dt: float, feed: Callable[[int], None]) -> None:
-    """Run an episode: in each step, the world, the node and a reward."""
+    """Run an episode: the world, the node and a reward in each step."""
     for step in range(steps):
         tarl.observe(step=step)
         feed(step)
@@ -110,7 +110,7 @@ def absolute_move(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None
 
 
 def obstacle_detection(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """Publish scans with an intermittent wall, and commands of another node."""
+    """Publish scans with an intermittent wall, and another node's commands."""
     scan, twist = message_type("sensor_msgs/msg/LaserScan"), message_type("geometry_msgs/msg/Twist")
     tarl.start(node)
 
@@ -124,7 +124,7 @@ def obstacle_detection(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -
 
 
 def patrol(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
-    """Let a client request a square or a triangle, depending on the seed."""
+    """Request a square or a triangle as a client, depending on the seed."""
     kind = 1.0 if tarl.seed % 2 else 2.0
     client = folder / "client.py"
     client.write_text(PATROL_CLIENT.format(kind=kind))
@@ -153,7 +153,7 @@ def _type(master: int, key: str) -> None:
 
 
 def yolo(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
-    """Publish camera images; the network is replaced by one that returns its input."""
+    """Publish camera images; a network that returns its input replaces the real one."""
 
     class Found:
         def __init__(self, frame: Any) -> None:
@@ -172,7 +172,7 @@ def yolo(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
 
 
 def qos_nodes(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
-    """Run both node classes of the file in a small program."""
+    """Run both node classes in the file in a small program."""
     program = folder / "talk.py"
     program.write_text(QOS_TALKER.format(folder=str(Path(node).parent)))
     tarl.start(str(program))
@@ -201,7 +201,7 @@ def alone(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
 
 
 def wander(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """Publish a wall ahead from time to time, long enough for the node to turn and to drive."""
+    """Publish a wall ahead from time to time, so that the node both turns and drives."""
     scan = message_type("sensor_msgs/LaserScan")
     tarl.start(node)
     _drive(

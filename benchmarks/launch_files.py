@@ -1,12 +1,12 @@
-"""Compare TARL's reading of launch files, which executes nothing, with the results of roslaunch and launch.
+"""Compare how TARL reads launch files, without executing anything, with the results of roslaunch and launch.
 
     python benchmarks/launch_files.py FOLDER... --ros1 PYTHON[:PATH] --ros2 PYTHON[:PATH...] [--show N]
 
-Each FOLDER contains checkouts, one folder per repository. `--ros1` is an interpreter with Debian's python3-roslaunch.
-`--ros2` is an interpreter with the sources of launch, launch_xml, launch_yaml and launch_ros. Use both in a disposable
-environment, since they execute launch files. Arguments without a default get the value `true`. The figures are the
-shares of nodes (package, program, namespace, name), remappings and parameters on which both agree. Outputs of commands,
-files outside the checkout, and launch files that roslaunch or launch rejects are counted separately.
+Each FOLDER has checkouts, one folder per repository. `--ros1` is an interpreter with Debian's python3-roslaunch;
+`--ros2` one with the sources of launch, launch_xml, launch_yaml and launch_ros. Use both in a disposable environment,
+because they execute launch files. Arguments without a default get the value `true`. The figures are the shares of nodes
+(package, program, namespace, name), remappings and parameters on which both agree. Outputs of commands, files outside
+the checkout, and launch files that roslaunch or launch rejects are counted separately.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ ORACLES = Path(__file__).parent / "launch_oracles"
 COMMAND = "<what a command prints>"
 Fact = tuple[str, ...]  # kind and values
 _ENVIRONMENT = re.compile(r"\$\(env (\w+)\)")
-# matches values that roslaunch and launch cannot know either
+# values that roslaunch and launch cannot know either
 _ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")
 
 
@@ -153,7 +153,7 @@ def _of_answer(answer: Mapping[str, Any], two: bool) -> Iterator[Fact]:
         yield ("node", *node)
         for old, new in dict(
             reversed(remaps) if two else remaps
-        ).items():  # in ROS 2, the first remapping of a name wins
+        ).items():  # in ROS 2, a name's first remapping wins
             yield ("remap", *node, _plain(old), _plain(new))
         for key, value in (more[0] if more else {}).items():
             yield ("param", *node, key, _value(value))
@@ -166,16 +166,16 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
     parameters: dict[str, Any] = {}
     for setting in launch.settings:
         if setting.unknown and setting.value is None and setting.yaml is None:
-            continue  # only the robot knows the value, so roslaunch does not get it either
+            continue  # known only on the robot, so roslaunch does not have it either
         parameters.update(_flat(setting.name, _content(setting)))
     for node in launch.nodes:
         name = _node(node.package, node.executable, node.namespace, node.name)
-        # the settings in the node's arguments; roslaunch and launch only pass them on to the node
+        # settings in the node's arguments, which roslaunch and launch merely pass on
         given = (ros2 if two else ros1)(node.arguments)
         pairs = _without(node.remaps, given.remaps)
         if (
             node.kind != "test"
-            # roslaunch and launch do not list tests among the nodes, but list their parameters among the others
+            # roslaunch and launch do not count tests as nodes, but list their parameters with the others
         ):
             yield ("node", *(_of_environment(one) for one in name))
             for old, new in {_plain(old): _plain(new) for old, new in pairs}.items():
@@ -192,7 +192,7 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
 
 
 def _without(pairs: Sequence[tuple[str, str]], left: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Remove one occurrence of each pair of `left`, and return the remaining pairs."""
+    """Remove each pair of `left` once, and return the remaining pairs."""
     out = Counter(left)
     kept = []
     for pair in pairs:

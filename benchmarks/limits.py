@@ -1,10 +1,9 @@
 """Measure time and memory at very large sizes: whether they grow in proportion to the size, and where the limit is.
 
-`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. The script prints CPU seconds
-and the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100
-MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if the time or
-memory per unit more than triples. The growth is measured from the second size to the last, or from the first to the
-second if there are only two sizes.
+`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. It prints CPU seconds and
+peak resident memory, in total and per unit. `--share 1` goes up to 10⁶ messages per episode, messages of 100 MB, 10,000
+sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if time or memory per unit
+more than triples from the second size to the last (from the first to the second if there are only two).
 """
 
 from __future__ import annotations
@@ -35,8 +34,8 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.ros import Ros, message_type
 
-EPISODE = 12_800  # size of an episode in the file of the case `recording` (bytes)
-WORSE = 3.0  # maximum factor by which time or memory per unit may grow from the second size to the last
+EPISODE = 12_800  # bytes per episode in the file of the case `recording`
+WORSE = 3.0  # maximum growth of time or memory per unit from the second size to the last
 NODE = """
 import rospy
 from std_msgs.msg import {kind}
@@ -50,17 +49,17 @@ rospy.spin()
 
 
 def messages(size: int) -> str:
-    """Publish `size` messages to a node that answers each of them."""
+    """Publish `size` messages to a node that answers each one."""
     return echo("Float64", [1.5] * size)
 
 
 def megabytes(size: int) -> str:
-    """Publish three messages of `size` MB."""
+    """Publish three messages of `size` MB each."""
     return echo("UInt8MultiArray", [b"\1" * (size * 1_000_000)] * 3)
 
 
 def echo(kind: str, values: list[object]) -> str:
-    """Run a node that publishes each received message again."""
+    """Run a node that publishes each message it receives."""
     made = message_type(f"std_msgs/{kind}")
     ros = Ros()
     with ros.installed():
@@ -76,7 +75,7 @@ def echo(kind: str, values: list[object]) -> str:
 
 
 def events(size: int) -> str:
-    """Record `size` events in one episode and compute their statistics."""
+    """Record `size` events in one episode, and compute the statistics."""
     recorder = Recorder()
     for number in range(size // 20):
         recorder.latch((number % 50,))
@@ -120,7 +119,7 @@ def both(*, episodes: int, cells: int, width: int, steps: int) -> str:
 def recording(size: int) -> str:
     """Save and load a recording of about `size` MB.
 
-    From the 501st on, the episodes are copies of earlier episodes under other seeds.
+    From the 501st on, episodes are copies of earlier ones under other seeds.
     """
     count = max(2, size * 1_000_000 // EPISODE)
     distinct = [world(range(seed, seed + 1), 400, 20, 1500) for seed in range(min(count, 500))]
@@ -147,12 +146,12 @@ def recording(size: int) -> str:
 
 
 def copied(one: Sample, seed: int) -> Sample:
-    """Return a copy of an episode under another seed that shares no memory with it."""
+    """Return a copy of an episode under another seed, which shares no memory with it."""
     return replace(copy.deepcopy(one), seeds=(seed,))
 
 
 def world(seeds: range, cells: int, width: int, steps: int) -> Sample:
-    """Record episodes that wander through the cells; some of the sites run in each step."""
+    """Record episodes that wander through the cells and run some of the sites in each step."""
     parts = []
     for seed in seeds:
         draws = np.random.default_rng(seed)
@@ -200,7 +199,7 @@ CASES: dict[str, tuple[Callable[[int], str], tuple[int, ...]]] = {
 
 
 def main() -> None:
-    """Print a row for each size of each case."""
+    """Print a row for each case and size."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("cases", nargs="*", help=f"of {', '.join(CASES)} (default: all)")
     parser.add_argument("--share", type=float, default=1.0, help="share of the largest size (default 1)")
@@ -244,7 +243,7 @@ def main() -> None:
 
 
 def peak() -> float:
-    """Return the peak of resident memory in MB."""
+    """Return the peak resident memory in MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
 
 

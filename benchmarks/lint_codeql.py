@@ -1,11 +1,10 @@
-"""Score the analysis against CodeQL's own data-flow tests: `python benchmarks/lint_codeql.py CHECKOUT`.
+"""Score the analysis on CodeQL's own data-flow tests: `python benchmarks/lint_codeql.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/codeql, of which only python/ql/test/library-tests/dataflow is read. In those tests,
-the variable SOURCE and a few literals are sources, and arguments of SINK and SINK_F are sinks. Comments state which
-flows exist (`flow=`), which of these CodeQL misses (`MISSING`), and which flows CodeQL reports although they do not
-exist (`SPURIOUS`). For our analysis, sources and sinks are given as settings: the variable is replaced by a call of a
-configured source, and the two functions are configured as sinks. Files are scored only if CodeQL uses them to test
-plain data flow and if they need no models of library functions.
+CHECKOUT is a checkout of github/codeql, of which only python/ql/test/library-tests/dataflow is read. In these tests,
+the variable SOURCE and a few literals are sources; arguments of SINK and SINK_F are sinks. Comments say which flows
+exist (`flow=`), which of these CodeQL misses (`MISSING`), and which reported flows do not exist (`SPURIOUS`). For TARL,
+the variable is replaced by a call of a configured source, and the two functions are configured as sinks. A file is
+scored only if CodeQL uses it to test plain data flow, and if it needs no models of library functions.
 """
 
 from __future__ import annotations
@@ -40,14 +39,14 @@ COMMENT = re.compile(
     r"(?P<how>MISSING:|SPURIOUS:)|flow=(?P<quote>[\"'])(?P<what>.*?)(?:, l:?(?P<offset>[-+]?\d+))? -> .*?(?P=quote)"
     r"|(?P<bare>\bflow\b(?!=))"
 )
-ANY = 0  # stands for any line, because the comment does not state the line of the source
+ANY = 0  # any line, because the comment does not give the source's line
 
 Pair = tuple[int, int]  # lines of source and sink
 
 
 @dataclass
 class Expected:
-    """The flows in the comments of one file: those that CodeQL finds, misses and reports wrongly."""
+    """The flows according to a file's comments: those that CodeQL finds, misses and reports wrongly."""
 
     found: set[Pair] = field(default_factory=set)
     missed: set[Pair] = field(default_factory=set)
@@ -72,7 +71,7 @@ def expected(text: str) -> Expected:
                 into = result.missed if match["how"] == "MISSING:" else result.invented
                 continue
             if match["bare"] and told:
-                continue  # the comment repeats a flow that CodeQL also finds on another path
+                continue  # repeats, on another path, a flow that CodeQL finds
             source = ANY if match["bare"] else number + int(match["offset"] or 0)
             into.add((source, number))
             told.add((source, number))
@@ -82,9 +81,9 @@ def expected(text: str) -> Expected:
 
 
 def prepared(text: str, wanted: Expected) -> str:
-    """Return the file with sources replaced by calls, its definitions of sources and sinks removed, and calls added.
+    """Return the file with calls as sources, without its definitions of sources and sinks, and with added calls.
 
-    The added calls are at the end and call the test functions. Line numbers do not change.
+    The added calls, at the end, call the test functions. Line numbers stay the same.
     """
     tree = ast.parse(text)
     lines = text.split("\n")
@@ -117,7 +116,7 @@ def _sources(tree: ast.Module, wanted: Expected) -> Iterator[ast.expr]:
 
 
 def _names(node: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement of a module defines."""
+    """Yield the names that a module's statement defines."""
     if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
         yield node.name
     elif isinstance(node, ast.Assign):
@@ -125,7 +124,7 @@ def _names(node: ast.stmt) -> Iterator[str]:
 
 
 def _calls(tree: ast.Module) -> Iterator[str]:
-    """Yield calls of the functions and methods that contain a sink, with default arguments and with unknown ones."""
+    """Yield calls of the functions and methods that contain a sink, with default and with unknown arguments."""
     for node in tree.body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and _sinks(node):
             yield f"{node.name}()"
@@ -147,10 +146,10 @@ def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) 
 
 
 def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
-    """Return the explicit flows of a prepared file, and those of them in which the value itself reaches the sink.
+    """Return a prepared file's explicit flows, and those in which the value itself reaches the sink.
 
-    The other flows pass a list or an object that contains the value. That is a flow for a publish call, but not for
-    CodeQL's sinks.
+    In the other flows, a list or object that contains the value reaches the sink. This counts as a flow for a publish
+    call, but not for CodeQL's sinks.
     """
     module = parse(f"{name}.py", text.encode(), name)
     if not isinstance(module, Module):
@@ -180,12 +179,12 @@ def _bare(machine: Linker) -> set[Pair]:
 
 
 def _argument_of(pos: Pos, call: Pos) -> bool:
-    """Return whether an expression is the last argument of a call, or the last part of that argument."""
+    """Return whether an expression is a call's last argument, or the last part of it."""
     return pos != call and (pos[0], pos[2], pos[3] + 1) == (call[0], call[2], call[3])
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the flows found in each file, then our shares next to CodeQL's."""
+    """Print the flows found in each file, then TARL's shares next to CodeQL's."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="checkout of github/codeql")
     parser.add_argument("--details", action="store_true", help="list all missed and invented flows")
@@ -230,7 +229,7 @@ def score(path: Path, folder: Path, details: bool, total: Counter[str]) -> None:
 
 
 def summary(total: Counter[str]) -> str:
-    """Return our shares next to CodeQL's."""
+    """Return TARL's shares next to CodeQL's."""
     real = total["real"] or 1
     return "\n".join(
         [

@@ -1,15 +1,15 @@
-"""Score tarl-lint against real nodes whose flows are known: `python benchmarks/lint_labels.py CHECKOUT LABELS.json`.
+"""Score tarl-lint on real nodes whose flows are known: `python benchmarks/lint_labels.py CHECKOUT LABELS.json`.
 
-CHECKOUT contains the repositories, each in a directory named owner/name, owner__name, owner+name or name. A flow is
-matched by the lines of its subscription and publish calls. For each node and in total, the script prints the following
-counts:
+CHECKOUT has the repositories, each in a directory named owner/name, owner__name, owner+name or name. A flow is
+identified by the lines of its subscription and publish calls. For each node and in total, the script prints the
+following counts:
 
-- flows that are found, found with the wrong kind, missing, or surplus
-- lines of the labelled paths that are found
+- flows that are found, found with the wrong kind, missing, or not labelled
+- lines of labelled paths that are found
 - data steps of found paths that are on labelled or optional lines
-- reports at publish calls that have no labelled flow
+- reports at publish calls without a labelled flow
 
-The labels cover neither Python 2 files nor flows from or to services, actions and transforms, so these are not counted.
+The labels do not cover Python 2 files, or flows from or to services, actions and transforms, so these are not counted.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from tarl_lint.api import Analysis, analyse
 from tarl_lint.catalog import on_topic
 from tarl_lint.model import Flow
 
-Pair = tuple[int, int]  # first lines of the subscription call and of the publish call
+Pair = tuple[int, int]  # first lines of the subscription call and the publish call
 COUNTS = (
     "explicit", "explicit found", "implicit", "implicit found", "other kind", "missing",
     "surplus explicit", "surplus implicit", "at clean sinks",
@@ -37,19 +37,19 @@ SHARES = (("path lines", "path lines found"), ("data steps", "data steps labelle
 
 @dataclass
 class Score:
-    """Counts, and a line for each difference from the labels."""
+    """Counts, and one line for each difference from the labels."""
 
     counts: Counter[str] = field(default_factory=Counter)
     remarks: list[str] = field(default_factory=list)
 
     def add(self, other: Score) -> None:
-        """Add another node's score."""
+        """Add the score of another node."""
         self.counts.update(other.counts)
         self.remarks += other.remarks
 
 
 def score(node: Mapping[str, Any], flows: Sequence[Flow]) -> Score:
-    """Compare the flows found in one file with its labels."""
+    """Compare the flows found in a file with its labels."""
     result = Score()
     wanted = {(f["source_line"], f["sink_line"]): f for f in node["flows"]}
     labelled = [f for f in flows if on_topic(f.source.api) and on_topic(f.sink.api)]
@@ -106,7 +106,7 @@ def _lines(lines: set[int]) -> str:
 
 
 def directory(checkout: Path, repo: str) -> Path | None:
-    """Return the directory of a repository below the checkout, or None if there is none."""
+    """Return a repository's directory in the checkout, or None."""
     owner, _, name = repo.partition("/")
     names = (f"{owner}/{name}", f"{owner}__{name}", f"{owner}+{name}", name)
     return next((checkout / n for n in names if (checkout / n).is_dir()), None)

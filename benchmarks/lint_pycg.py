@@ -1,12 +1,12 @@
 """Score the call resolver on PyCG's micro-benchmark: `python benchmarks/lint_pycg.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/vitsalis/PyCG. This repository contains small programs with their true calls. As in
-PyCG, a program is *sound* if the tool misses no call, and *complete* if the tool reports no wrong call. PyCG itself
-runs on the same programs, from the same checkout. For both tools, only calls between functions of the programs count;
-calls of builtins and libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
+CHECKOUT is a checkout of github/vitsalis/PyCG, which has small programs with their true calls. As in PyCG, a result is
+*sound* if no call of a program is missed, and *complete* if no wrong call is reported. PyCG itself runs on the same
+programs, from the same checkout. For both tools, only calls between functions of the programs count, not those of
+builtins and libraries. As in PyCG, functions that nothing calls are entry points.
 
-The true calls were written by hand. With `--run`, the script executes each program with a missing call, and prints how
-many of the missing calls Python really makes.
+The true calls were written by hand. With `--run`, each program with a missing call is executed, to print how many of
+the missing calls Python really makes.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from tarl_lint.settings.config import Config
 
 SNIPPETS = Path("micro-benchmark/snippets")
 
-Edge = tuple[str, str]  # caller and callee, dotted
-# run main.py, and print file, line and name of caller and callee of each call between functions of the folder
+Edge = tuple[str, str]  # caller and callee (dotted names)
+# run main.py, and print file, line and name of caller and callee for each call between functions in the folder
 TRACED = """
 import json, os, runpy, sys
 
@@ -63,7 +63,7 @@ print(json.dumps(sorted(made)))
 
 
 class Calls(Linker):
-    """Record caller and callee of every call."""
+    """Record the caller and callee of every call."""
 
     def __init__(self, modules: Sequence[Module]) -> None:
         super().__init__(modules, Config())
@@ -79,7 +79,7 @@ class Calls(Linker):
         return f"{module}.{inner}" if inner else module
 
     def edges(self) -> set[Edge]:
-        """Return every call between functions of the analysed files."""
+        """Return all calls between functions of the analysed files."""
         frames = [f for f in self.frames.values() if f.caller is not None and _own(f.caller)]
         return {(self.name(f.caller), self.name(f)) for f in frames if f.caller is not None}
 
@@ -119,12 +119,12 @@ class Calls(Linker):
 
 
 def _own(frame: Frame) -> bool:
-    """Return whether a frame belongs to a function or module of the analysed files, not to the interpreter."""
+    """Return whether a frame belongs to the analysed files, not to the interpreter."""
     return not (isinstance(frame.key, tuple) and frame.key[0] == "root")
 
 
 def function_names(module: Module) -> Iterator[tuple[tuple[int, int], str]]:
-    """Yield the start (line, column) and dotted name of each function; lambdas are numbered in their scope."""
+    """Yield start (line, column) and dotted name of each function; lambdas are numbered in their scope."""
     pending: list[tuple[ast.AST, str]] = [(module.tree, "")]
     counts: Counter[str] = Counter()
     while pending:
@@ -158,7 +158,7 @@ def ours(folder: Path) -> set[Edge]:
 
 
 def theirs(folder: Path) -> set[Edge]:
-    """Return the calls that PyCG finds in a program, in its own process because it changes the import system."""
+    """Return the calls that PyCG finds in a program, in a separate process because it changes the import system."""
     checkout = folder.parents[len(SNIPPETS.parts) + 1]
     command = [sys.executable, "-m", "pycg", "--package", str(folder), str(folder / "main.py")]
     done = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=False)
@@ -167,7 +167,7 @@ def theirs(folder: Path) -> set[Edge]:
 
 
 def executed(folder: Path) -> set[Edge]:
-    """Return the calls that Python makes when it runs a program, in a process of its own."""
+    """Return the calls that Python makes when running a program, in a separate process."""
     done = subprocess.run(
         [sys.executable, "-c", TRACED], cwd=folder, capture_output=True, text=True, check=True, timeout=60
     )
@@ -179,7 +179,7 @@ def executed(folder: Path) -> set[Edge]:
             names |= {(str(path), line): name for line, name in own.items()}
             for node in ast.walk(module.tree):
                 if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.decorator_list:
-                    # the code object of a decorated function starts at its first decorator
+                    # a decorated function's code object starts at its first decorator
                     names[str(path), node.decorator_list[0].lineno] = own[node.lineno]
             names[str(path), 0] = module.name
 
@@ -196,7 +196,7 @@ def inner_calls(edges: set[Edge], folder: Path) -> set[Edge]:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print our shares next to PyCG's."""
+    """Print TARL's shares next to PyCG's."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="checkout of github/vitsalis/PyCG")
     parser.add_argument("--details", action="store_true", help="list all missing and invented calls")

@@ -1,14 +1,13 @@
-"""Compare the speed of `tarl-lint` with that of `ast.parse` and Semgrep on the same trees, in one run.
+"""Compare the speed of `tarl-lint` with `ast.parse` and Semgrep on the same trees, in the same run.
 
     python benchmarks/lint_speed.py [--semgrep PATH/TO/semgrep] [--repetitions 3] TREE [TREE ...]
 
-For every tree, the script prints the number of lines and four times in CPU seconds: of `ast.parse` over all .py files,
-of tarl-lint without a cache, of tarl-lint with a warm cache, and of Semgrep. Semgrep uses a taint rule from subscriber
-callbacks to publish calls. The script also prints the ratios of these times, and the peak memory of tarl-lint,
-including child processes. For the last tree, the script also lints two copies in one run, and four copies in another.
-CPU time includes all processes; each figure is the minimum of the repetitions. Suitable public trees: checkouts of ROS
-repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from PyPI, the standard library. Python
-writes bytecode, as it does for an installed package.
+For each tree, the script prints the number of lines and CPU seconds: of `ast.parse` over all .py files, of tarl-lint
+without a cache and with a warm cache, and of Semgrep with a taint rule from subscriber callbacks to publish calls. It
+also prints the ratios of these times, and tarl-lint's peak memory. The last tree is also linted as two copies in one
+run, and as four in another. CPU time and memory include child processes; each figure is the minimum of the repetitions.
+Suitable public trees: checkouts of ROS repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels
+from PyPI, the standard library. Python writes bytecode, as for an installed package.
 """
 
 from __future__ import annotations
@@ -57,14 +56,14 @@ for path in sys.stdin.read().split("\\n"):
 
 @dataclass(frozen=True)
 class Cost:
-    """Cost of a command: CPU seconds, and peak memory of its largest process in megabytes."""
+    """A command's cost: CPU seconds, and peak memory of its largest process in megabytes."""
 
     cpu: float
     memory: float = 0.0
 
 
 def cost(command: Sequence[str], *, given: str = "", directory: Path | None = None) -> Cost:
-    """Run a command and return its cost, including its children."""
+    """Run a command; return its cost, including its children."""
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     reader, writer = os.pipe()
     child = os.fork()
@@ -102,7 +101,7 @@ def python_files(tree: Path) -> list[Path]:
 
 
 def parsing(tree: Path, repetitions: int) -> Cost:
-    """Return the cost of `ast.parse` over a tree, excluding the start of Python and the reading of files."""
+    """Return the cost of `ast.parse` over a tree, without starting Python and reading files."""
     names = "\n".join(str(p) for p in python_files(tree))
     bare, whole = (
         least([sys.executable, "-c", PARSE.replace("PARSES", flag)], repetitions, given=names)
@@ -112,7 +111,7 @@ def parsing(tree: Path, repetitions: int) -> Cost:
 
 
 def linting(tree: Path, repetitions: int, *, cached: bool) -> Cost:
-    """Return the cost of tarl-lint with an empty cache or, if `cached`, with a full one."""
+    """Return the cost of tarl-lint, with an empty cache or (`cached`) a full one."""
     command = [sys.executable, "-m", "tarl_lint", "--exit-zero", "--format", "concise"]
     with tempfile.TemporaryDirectory() as home:
         directory = Path(home)
@@ -151,7 +150,7 @@ def line(name: str, tree: Path, arguments: argparse.Namespace) -> str:
 
 
 def copies(tree: Path, number: int, home: Path) -> Path:
-    """Return a directory with copies of a tree, each in a folder of its own."""
+    """Return a directory with copies of a tree, each in its own folder."""
     for copy in range(number):
         shutil.copytree(tree, home / f"copy_{copy}", dirs_exist_ok=True, ignore=_not_python)
     return home

@@ -1,16 +1,16 @@
 """Measure what function summaries could save: `python benchmarks/lint_summaries.py TREE [TREE ...]`.
 
-For each tree, the script prints the CPU seconds of the interpretation, and how many of these seconds are spent in
-function bodies (without nested calls). The first run of a function in a call context and later runs are counted
-separately. The script also prints how many of these seconds summaries would save if it cost nothing to apply a summary.
-A summary is assumed to hold for all runs of a function with the same key. There are three variants of the key:
+For each tree, the script prints the CPU seconds of the interpretation, and how many of these are spent in function
+bodies (without nested calls), separately for the first and later runs of a function in a call context. It also prints
+how many of them summaries would save if applying a summary cost nothing. A summary is assumed to be valid for all runs
+of a function with the same key. There are three variants of the key:
 
-- *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The result
-  also depends on what the function reads elsewhere, so no correct summary can save as much as this variant.
-- *reads*: in addition, the same facts about every value that the run read before it stored to it, by the kind of the
-  object and the name of the field.
-- *aliases*: in addition, which of these objects are identical (told by the paths that lead to them), and which
-  statements no source had reached yet.
+- *arguments*: kinds and classes of the arguments' objects, their constants, and whether they carry data. The result
+  also depends on what the function reads elsewhere, so this is an upper limit of what a correct summary can save.
+- *reads*: also the same facts about every value that the run reads before writing it, by kind of object and name of
+  field.
+- *aliases*: also which of these objects are identical (identified by the paths to them), and which statements no source
+  has reached yet.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ from tarl_lint.memory.frames import Frame, Origin
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Key, Obj, Value
 
-NAMED = ("module", "class", "ext")  # kinds of objects that are identical in all call contexts
+NAMED = ("module", "class", "ext")  # kinds of objects that are the same in all call contexts
 KEYS = ("arguments", "reads", "aliases")
 
 
 @dataclass
 class Names:
-    """Assigns each object a name that is the same in every call context."""
+    """Gives each object a name that is the same in every call context."""
 
     frame: Frame
     known: dict[Obj, Hashable] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Names:
         return kind_of(obj), obj.many, obj.laden, len(self.known)
 
     def value(self, value: Value) -> Hashable:
-        """Return what is the same in all call contexts: whether the value carries data, its objects, constants."""
+        """Return what is the same in all call contexts: whether the value carries data, its objects, its constants."""
         found = sorted(value.pts, key=lambda o: (o not in self.known, o.kind, o.name, o.number))
         return bool(value.deps), tuple(self.name(o) for o in found), value.consts
 
@@ -88,12 +88,12 @@ def arguments_of(passed: Arguments, form: Callable[[Value], Hashable]) -> Hashab
 
 
 def read_kinds(run: Run) -> Hashable:
-    """Return the kinds of all values that a run read."""
+    """Return the kinds of all values that a run reads."""
     return frozenset((kind_of(k[0]), k[1], kinds(v)) for k, v in run.found.items() if v is not None)
 
 
 def read_objects(ctx: Interpreter, frame: Frame, run: Run) -> Hashable:
-    """Return the values that a run read, with aliases, and the statements that no source had reached yet."""
+    """Return the values that a run reads, with aliases, and the statements that no source has reached yet."""
     names = Names(frame)
     found: list[Hashable] = [arguments_of(run.passed, names.value)]
     left = {key: value for key, value in run.found.items() if value is not None}
@@ -111,10 +111,10 @@ def _nameable(names: Names, key: Key) -> bool:
 
 @dataclass
 class Meter:
-    """Measures the time of function bodies, and how much of it a summary would save."""
+    """Measures the time spent in function bodies, and how much of it a summary would save."""
 
     total: float = 0.0  # duration of the interpretation (s)
-    overhead: float = 0.0  # time spent measuring (s)
+    overhead: float = 0.0  # time spent on measuring (s)
     spent: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     nested: list[float] = field(default_factory=list)
     contexts: set[Frame] = field(default_factory=set)
@@ -129,7 +129,7 @@ class Meter:
         mode: Mode,
         execute: Callable[[], Delta],
     ) -> Run:
-        """Execute a call in place of `replay._executed`, and count it."""
+        """Execute a call instead of `replay._executed`, and count it."""
         start, overhead = time.process_time(), self.overhead
         self.nested.append(0.0)
         run = EXECUTED(ctx, frame, passed, parts, mode, execute)
@@ -155,7 +155,7 @@ class Meter:
             self.seen.add(key)
 
     def link(self, machine: Linker) -> None:
-        """Interpret the modules in place of `Linker.link`."""
+        """Interpret the modules instead of `Linker.link`."""
         start, overhead = time.process_time(), self.overhead
         LINK(machine)
         self.total += time.process_time() - start - (self.overhead - overhead)

@@ -3,20 +3,18 @@
     python benchmarks/lint_truth.py draw TREES --seed 41 [--each 60] [--without FILE ...] [--judgements FILE]
     python benchmarks/lint_truth.py compare TREES benchmarks/lint_truth/JUDGED.json [--verbose]
 
-TREES is a directory of checkouts, one directory per repository. The population is every call `x.publish(…)` in their
-Python files. These calls are found in the syntax tree, without the linter; the linter only says which of them have a
-report. `draw` takes equally many calls with and without a report. It prints the calls sorted by place, so that the list
-does not show which of them have a report. The calls in the files given with `--without` are excluded: earlier draws, or
-texts that contain `file.py:line`.
+TREES is a directory of checkouts, one per repository. The population is every call `x.publish(…)` in their Python
+files, found in the syntax tree, without the linter; the linter only says which of them have a report. `draw` takes
+equally many calls with and without a report. It prints them sorted by place, so that the order does not show which is
+which. Calls in the files given with `--without` (earlier draws, or texts that contain `file.py:line`) are excluded.
 
-Judgements are made from the source alone, before `compare` runs. A judged call names its sources, each with its kind
-(`data` or `control`) and the lines of the path that every correct report must contain:
+Calls are judged from the source alone, before `compare` runs. A judged call names its sources, each with its kind
+(`data` or `control`) and the lines that the path in every correct report must contain:
 
     {"seed": 41, "calls": {"repo/dir/node.py:30": {"from": [{"at": "12", "kind": "data", "path": ["20-22", "30"]}]}}}
 
-A place is a line of the call's file, or `path:line` below the repository. A call with `"skip": "why"` is not a
-publish call of ROS. `"uncalled": true` marks a call in code that nothing in its tree calls; such calls are counted in
-a separate row.
+A place is a line of the call's file, or `path:line` in the repository. A call with `"skip": "why"` is not a publish
+call of ROS. `"uncalled": true` marks a call in code that nothing in its tree calls; these calls have a separate row.
 """
 
 from __future__ import annotations
@@ -54,10 +52,10 @@ class Place:
 
     @classmethod
     def read(cls, text: str, beside: str = "") -> Place:
-        """Return the place that `text` names: `path:line`, or a line of the file `beside`.
+        """Return the place for `path:line`, or for a line of the file `beside`.
 
-        A path is relative to the directory of the trees if it begins with the same folder as `beside`; otherwise, it is
-        relative to this first folder of `beside`.
+        A path is relative to the directory of the trees if it begins with the same folder as `beside`; otherwise it is
+        relative to that folder.
         """
         path, _, line = text.rpartition(":")
         home = beside.partition("/")[0]
@@ -67,7 +65,7 @@ class Place:
 
 
 def scripts(trees: Path) -> Iterator[Path]:
-    """Yield every Python file below the directory, in order of names."""
+    """Yield every Python file in the directory, sorted by name."""
     for path in sorted(trees.rglob("*")):
         if path.suffix == ".py" and path.is_file():
             yield path
@@ -79,7 +77,7 @@ def scripts(trees: Path) -> Iterator[Path]:
 
 
 def publish_calls(trees: Path) -> list[Place]:
-    """Return the place of every call `x.publish(…)` in a file that Python 3 can parse."""
+    """Return the place of every call `x.publish(…)` in the files that Python 3 can parse."""
     found = set[Place]()
     for path in scripts(trees):
         try:
@@ -95,7 +93,7 @@ def publish_calls(trees: Path) -> list[Place]:
 
 
 def reported(trees: Path) -> dict[Place, list[Flow]]:
-    """Return the flows that tarl-lint reports in each repository, by the place of the publish call."""
+    """Return the flows that tarl-lint reports in each repository, by place of the publish call."""
     flows = dict[Place, list[Flow]]()
     for tree in sorted(path for path in trees.iterdir() if path.is_dir() and not path.name.startswith(".")):
         for finding in run(Options(paths=(tree,), jobs=1, cache=False), Config(root=tree)).findings:
@@ -119,7 +117,7 @@ def drawn(calls: Sequence[Place], loud: set[Place], seed: int, each: int) -> lis
 
 
 def seen(file: Path) -> set[tuple[str, int]]:
-    """Return the place of each `file.py:line` in a text, as the last two parts of the path and the line."""
+    """Return each `file.py:line` in a text, as the last two parts of the path, and the line."""
     text = file.read_text(encoding="utf-8")
     return {(_tail(path), int(line)) for path, line in re.findall(r"([\w./+-]+):(\d+)", text)}
 
@@ -130,13 +128,13 @@ def _tail(path: str) -> str:
 
 @dataclass
 class Truth:
-    """The counts of a comparison, and one remark for each difference."""
+    """The counts of a comparison, and a remark on each difference."""
 
     counts: Counter[str] = field(default_factory=Counter)
     remarks: list[str] = field(default_factory=list)
 
     def compare(self, call: Place, judged: Mapping[str, Any], flows: Sequence[Flow], trees: Path) -> None:
-        """Compare the judgement of one publish call with its reports."""
+        """Compare the judgement of a publish call with its reports."""
         if judged.get("skip"):
             self.counts["left out"] += 1
             return
@@ -182,7 +180,7 @@ class Truth:
 
 
 def lines(texts: Sequence[str], beside: str) -> Iterator[Place]:
-    """Yield the places that a judged path names: lines or ranges of lines, optionally after a path and a colon."""
+    """Yield the places in a judged path: lines or ranges of lines, optionally after a path and a colon."""
     for text in texts:
         path, _, span = text.rpartition(":")
         first, _, last = span.partition("-")

@@ -45,7 +45,7 @@ def pytest_runtest_setup(item):
 
 
 def known(keep: Sequence[Path], measure: Callable[[], Reached]) -> Reached:
-    """Return which tests reach which lines; measure it, or read it from the files."""
+    """Return which tests reach which lines: measured, or read from the files."""
     if not keep:
         return measure()
     reached = Reached()
@@ -57,7 +57,7 @@ def known(keep: Sequence[Path], measure: Callable[[], Reached]) -> Reached:
 
 
 def measured_in_forks(copy: Path, package: str, tests: Sequence[str], slowest: float = SLOWEST) -> Reached:
-    """Run the tests once with marks in the package; see `reach_marks.py`."""
+    """Run the tests once with marks in the package (see `reach_marks.py`)."""
     with tempfile.TemporaryDirectory(prefix="marks-") as folder:
         compiled(copy, package, Path(folder))
         start = f"import sys\nsys.path.append({str(Path(__file__).parent)!r})\n"
@@ -70,7 +70,7 @@ def measured_in_forks(copy: Path, package: str, tests: Sequence[str], slowest: f
 
 
 def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
-    """Run the tests once under coverage."""
+    """Run the tests once with coverage."""
     with tempfile.TemporaryDirectory() as folder:
         settings, data = Path(folder) / "rc", Path(folder) / "data"
         settings.write_text(SETTINGS.format(source=copy / package, data=data))

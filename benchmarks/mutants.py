@@ -1,19 +1,20 @@
 """Mutation testing: insert small faults, chosen by a seed, and run the tests that reach the line.
 
-`make mutants` inserts ten faults in each package of pytest_tarl, and `make mutants OF=tarl_lint` does so for tarl_lint.
-Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a copy
-of the checkout without the caches of TARL. The fault is caught if a test fails, or if the tests take far longer than
-without the fault. A test that also fails without the fault does not count. A fault that no test reaches is not caught.
-The tests in the file named after the module run first, then the other tests. Each of these two groups runs from fast to
-slow, until the next test would exceed `--budget`. A slower test might still catch a fault that survives, so the share
-of caught faults is a lower bound. Tests with a pytest.ini of their own run in a separate pytest. The script prints the
-share of caught faults with its exact 95 % interval, for each package and in total, and the surviving faults.
+`make mutants` inserts ten faults into each package of pytest_tarl; `make mutants OF=tarl_lint` does the same for
+tarl_lint. Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes
+into a copy of the checkout without TARL's caches. It is caught if a test fails, or if the tests take far longer than
+without it. A test that also fails without the fault does not count, and a fault that no test reaches is not caught.
 
-With `--forks`, a run takes only a small part of this time. One pytest imports everything and collects all tests, and
-each fault is put into the functions of a fork of it (`forked_tests.py`). A fault in a line that runs during the imports
-is tried in a fresh process instead. The lines of each test are measured with marks in place of coverage
-(`reach_marks.py`). A test that takes more than `--slowest` CPU seconds is left out. Once the tests of a file have taken
-2.5 times as many, the rest of the file is left out, too. Tests with a pytest.ini of their own are not run.
+Tests in the file named after the module run first, then the others. Each group runs from fast to slow, until the next
+test would exceed `--budget`. A slower test might still catch a surviving fault, so the share of caught faults is a
+lower bound. Tests with their own pytest.ini run in a separate pytest. The script prints the share of caught faults with
+its exact 95 % interval, by package and in total, and the surviving faults.
+
+With `--forks`, a run takes only a small part of this time. One pytest imports everything and collects all tests; each
+fault is put into the functions of a fork of it (`forked_tests.py`). A fault in a line that runs during imports is tried
+in a fresh process instead. The lines of each test are measured with marks instead of coverage (`reach_marks.py`). A
+test that takes more than `--slowest` CPU seconds is left out. Once a file's tests have taken 2.5 times as many, the
+rest of the file is left out as well. Tests with their own pytest.ini do not run.
 """
 
 from __future__ import annotations
@@ -43,20 +44,20 @@ ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-# limit of the CPU seconds of the tests that run for one fault; the times were measured without the fault
+# maximum CPU seconds (measured without the fault) of the tests that run for one fault
 BUDGET = 120.0
-PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
-SLOWED = 10  # a fork may take this many times the CPU seconds of its tests (wall time, on a busy machine)
+PATIENCE = 120.0  # seconds allowed in addition to three times the tests' CPU time without the fault
+SLOWED = 10  # a fork may take this many times its tests' CPU seconds (in wall time, on a busy machine)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a fault: caught, survived, timeout, unreached, or unclear if the tests fail without it."""
+    """The result of a fault: caught, survived, timeout, unreached, or unclear if tests fail without it."""
 
     fault: Fault
     word: str
     tests: int
-    failed: str = ""  # the test that failed with the fault, if one is known
+    failed: str = ""  # the test that failed with the fault, if known
 
 
 def main() -> None:
@@ -162,7 +163,7 @@ def main() -> None:
 def sample(
     copy: Path, package: str, only: set[str], each: int, seed: int, count: int | None = None
 ) -> list[Fault]:
-    """Choose `each` faults per package, or `count` in all. Files are weighted by their number of possible faults."""
+    """Choose `each` faults per package, or `count` in total; files are weighted by their possible faults."""
     chosen: list[Fault] = []
     folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
     homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
@@ -186,8 +187,8 @@ def tried(
 ) -> Outcome:
     """Insert a fault, run the tests that reach it, and remove it.
 
-    The fault counts as caught if the failed test passes without the fault within the same time. After a timeout, all
-    tests have to pass.
+    The fault counts as caught if the failed test passes without it within the same time. After a timeout, all tests
+    have to pass.
     """
     if not tests:
         return Outcome(fault, "unreached", 0)
@@ -217,9 +218,9 @@ def tried_in_fork(
     forked: Forks,
     patience: float = PATIENCE,
 ) -> Outcome | None:
-    """Insert a fault, test it in a fork, and remove it; return None if it needs a fresh process (see `tried`).
+    """Insert a fault, test it in a fork, and remove it; None if it needs a fresh process (see `tried`).
 
-    The fault is caught if the same tests, up to the one that failed, pass within the same time without the fault.
+    The fault is caught if the same tests, up to the one that failed, pass without it within the same time.
     """
     if not tests:
         return Outcome(fault, "unreached", 0)
@@ -250,9 +251,9 @@ def inserted(fault: Fault, copy: Path) -> Iterator[Path]:
 
 
 def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tuple[int, str]:
-    """Return pytest's exit status and the first failed test, or no test if pytest itself failed.
+    """Return pytest's exit status and the first failed test; no test if pytest itself failed.
 
-    Raises TimeoutExpired if the tests of one pytest.ini exceed the limit in seconds.
+    Raise TimeoutExpired if the tests under one pytest.ini exceed the limit in seconds.
     """
     for arguments in apart(copy, tests):
         try:
@@ -282,7 +283,7 @@ def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tu
 
 
 def report(outcomes: Sequence[Outcome]) -> None:
-    """Print the shares by package and in total, and the survivors."""
+    """Print the shares by package and in total, and the surviving faults."""
     words = ("caught", "timeout", "survived", "unreached", "unclear")
     packages = sorted({home(one) for one in outcomes})
     print(f"\n| package | faults | {' | '.join(words)} | share (95 % interval) |\n|{'---|' * 8}")
@@ -297,7 +298,7 @@ def report(outcomes: Sequence[Outcome]) -> None:
 
 
 def share(outcomes: Sequence[Outcome]) -> str:
-    """Return the share of caught faults with its exact (Clopper-Pearson) 95 % interval, for a table."""
+    """Return the share of caught faults for a table, with its exact (Clopper-Pearson) 95 % interval."""
     total, good = len(outcomes), sum(one.word in ("caught", "timeout") for one in outcomes)
     low = beta.ppf(0.025, good, total - good + 1) if good else 0.0
     high = beta.ppf(0.975, good + 1, total - good) if good < total else 1.0
@@ -305,7 +306,7 @@ def share(outcomes: Sequence[Outcome]) -> str:
 
 
 def home(outcome: Outcome) -> str:
-    """Return the package of a fault."""
+    """Return a fault's package."""
     parts = outcome.fault.path.split("/")
     return parts[1] if len(parts) > 2 else "."
 

@@ -1,4 +1,4 @@
-"""The test files that are nearest to a module by imports, to choose tests without measuring coverage."""
+"""Find the test files nearest to a module by imports, to choose tests without measuring coverage."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ FARTHEST = 3  # maximum length of a chain of imports from a test file to a modul
 
 @dataclass(frozen=True)
 class Nearest:
-    """Ranks test files for the modules of a package below `root`; `tests` are files or folders of tests."""
+    """Ranks test files for the modules of a package in `root`; `tests` are files or folders of tests."""
 
     root: Path
     package: str
     tests: tuple[str, ...]
 
     def files(self, path: str, most: int) -> list[str]:
-        """Return at most `most` test files for the module with a path relative to `root`.
+        """Return at most `most` test files for the module at a path relative to `root`.
 
-        Files named after the module come first. The others are sorted by the number of imports between the file and the
-        module, then by whether their folder is named after the module's package, then by size.
+        Files named after the module come first. The others are sorted by the number of imports between file and module,
+        then by whether their folder is named after the module's package, then by size.
         """
         parts = Path(path).parts
         home = parts[1] if len(parts) > 2 else ""
@@ -70,7 +70,7 @@ def _dotted(path: Path) -> str:
 
 
 def _imports(file: Path) -> frozenset[str]:
-    """Return the names that a file imports absolutely, as modules and as members of modules."""
+    """Return the names in a file's absolute imports, as modules and as members of modules."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(file.read_bytes())):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:

@@ -1,11 +1,11 @@
-"""Print how much the world of each real node may change before its guarantee fails, as a stress run reports it.
+"""Print how far each real node's world may change before its guarantee fails, according to a stress run.
 
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
     python benchmarks/node_margins.py TARGET [NODE ...]
 
-Each drift of a world is a direction of its own, from the nominal value to the value of the drift. For a drift with
-several numbers, the coordinate is the share of the way to these numbers. Each run has seed 1 and may use 600 episodes.
-If two drifts of a world differ only in whether they are permanent, they are one direction.
+Each drift of a world is a separate direction, from the nominal value to the drift's value. For a drift with several
+numbers, the coordinate is the share of the way to these numbers. Each run has seed 1 and may use 600 episodes. Two
+drifts that differ only in being permanent are one direction.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ BUDGET, SEED = 600, 1
 
 
 def margins(stage: Stage) -> list[Stress]:
-    """Return a stress run for each drift of a node, from its nominal world to the drift."""
-    distinct: dict[str, str] = {}  # value of a drift → the first name with this value
+    """Return a stress run for each of a node's drifts, from its nominal world to the drift."""
+    distinct: dict[str, str] = {}  # value of a drift → first name with this value
     for name, drift in stage.marked.drifts.items():
         distinct.setdefault(repr(drift.value), name)
     given: Guarantee | None = None

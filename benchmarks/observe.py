@@ -1,11 +1,11 @@
-"""Measure the time that `observe` adds to a control cycle: p50, p99 and p99.9 of a loop with and without it.
+"""Measure how much time `observe` adds to a control cycle: p50, p99 and p99.9 of a loop with and without it.
 
-Run `python benchmarks/observe.py`. A cycle is the work of a node between a message and its command: the callback and
-the control law, 18 recorded lines. In each cycle the observer receives two sensors and a reward, as on a robot, while
-the log is written and synced. Blocks of both kinds alternate, each in its own process. The time of a cycle is measured
-from the moment at which the cycle was due, so that it includes delays by other threads. The row `executing` is measured
-from the first line of the cycle. With `--realtime`, the loop has real-time priority (SCHED_FIFO), as control loops do,
-so that other programs do not delay it.
+Run `python benchmarks/observe.py`. A cycle is a node's work between a message and its command: the callback and the
+control law, 18 recorded lines. In each cycle, the observer receives two sensors and a reward, as on a robot, while the
+log is written and synced. Blocks with and without it alternate, each in its own process. A cycle's time starts when the
+cycle is due, so that it includes delays by other threads; in the row `executing`, it starts at the cycle's first line.
+With `--realtime`, the loop has real-time priority (SCHED_FIFO), as control loops do, so that other programs do not
+delay it.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ SENSORS = (
 )
 LINES = [f"    v{n} = v{n - 1} * 0.5 + {n}" for n in range(1, 19)]
 NODE = "\n".join(["def cycle(v0):", *LINES, "    speed = 5 * v18", "    return speed", ""])
-PERIOD = 0.002  # time between two cycles (s)
-WARM = 50  # number of cycles at the start of a block that are not counted
+PERIOD = 0.002  # seconds between two cycles
+WARM = 50  # cycles at the start of a block that do not count
 AT = (50, 99, 99.9)
 
 
@@ -47,7 +47,7 @@ class Message:
 
 
 def node(folder: Path, hooks: Any = None) -> Any:
-    """Return the cycle of the node, either instrumented with the hooks of the stream or plain."""
+    """Return the node's cycle, instrumented with the hooks of the stream, or plain."""
     path = folder / "node.py"
     path.write_text(NODE)
     columns = {(number, 5): number - 2 for number in range(2, 22)}
@@ -85,7 +85,7 @@ def main() -> None:
 
 
 def table(which: str, bare: Any, observed: Any) -> None:
-    """Print the percentiles of both kinds and their differences."""
+    """Print the percentiles with and without the observer, and their differences."""
     print(
         f"\n{'since ' + which if which == 'due' else which:<12}{'p50':>10}{'p99':>10}{'p99.9':>10}   µs a cycle"
     )
@@ -96,8 +96,8 @@ def table(which: str, bare: Any, observed: Any) -> None:
 
 
 def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
-    """Run a block of cycles and return their times in µs."""
-    if realtime:  # set the priority that `chrt -f 10 tarl observe node.py` sets
+    """Run a block of cycles; return their times in µs."""
+    if realtime:  # the priority that `chrt -f 10 tarl observe node.py` sets
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
@@ -128,7 +128,7 @@ def loop(cycle: Any, observer: Observer | None, cycles: int) -> tuple[list[float
     for number in range(cycles + WARM):
         value = (number % 100) / 10.0
         message = Message(value, number % 50 < 10)
-        due = max(due + int(PERIOD * 1e9), perf_counter_ns())  # a late cycle does not make later cycles late
+        due = max(due + int(PERIOD * 1e9), perf_counter_ns())  # a late cycle must not make later cycles late
         sleep(max(0.0, (due - perf_counter_ns()) / 1e9))
         began = perf_counter_ns()
         if observer is not None:

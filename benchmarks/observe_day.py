@@ -1,14 +1,14 @@
 """Run a simulated day of `observe` at 100 Hz as fast as possible, to see whether memory grows or steps are lost.
 
-`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one mission
-per hour, and rotates the log by size. The script prints the resident memory of the node's process and of the writer
-every hour. Then it reads the log back: each step must occur once, in order, and each second must have all of its steps.
-The exit status is 1 in three cases: a step is missing; the median memory of the last quarter of the day exceeds that of
-the second quarter by more than --growth MB; or the number of memory blocks of the node's process has grown.
+`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py on a simulated clock, one mission per
+hour, with a log that is rotated by size. Every hour, it prints the resident memory of the node's process and of the
+writer. Then it reads the log back: each step must occur once, in order, and each second must have all its steps. The
+exit status is 1 if a step is missing, if the median memory of the day's last quarter exceeds that of the second quarter
+by more than --growth MB, or if the number of memory blocks in the node's process has grown.
 
-The simulated clock stands still while more than a second of steps waits for the observer's thread, since a robot's
+The simulated clock stands still while more than a second of steps waits for the observer's thread, because a robot's
 clock never runs ahead of that thread. Otherwise the resident memory would show how far the clock ran ahead: the heap
-keeps the size that the largest backlog needed, although its blocks are free.
+keeps the size needed for the largest backlog, although its blocks are free.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from pytest_tarl.observing.log_format import records, set_aside
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import Rotation, unpacked
 
-RATE = 100  # number of cycles per second
+RATE = 100  # cycles per second
 BEHIND = RATE  # maximum number of steps that wait for the observer's thread
-OBJECTS = 1000  # maximum growth of the number of memory blocks that Python holds
-SAMPLES = 24  # number of memory samples and of missions
+OBJECTS = 1000  # maximum growth of the number of memory blocks held by Python
+SAMPLES = 24  # number of memory samples, and of missions
 ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}
 
 
@@ -112,7 +112,7 @@ def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, f
         observer.step(float(number))
         clock.now += 1 / RATE
         while len(observer._times) > BEHIND or observer._outlet.unsent > 1 << 19:
-            sleep(0.0005)  # the simulated clock is faster than the thread and the disk, so wait for them
+            sleep(0.0005)  # wait for the thread and the disk, which are slower than the simulated clock
     observer.end(passed=True)
     observer.close()
     sizes.append((resident("self"), sizes[-1][1]))
@@ -121,13 +121,13 @@ def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, f
 
 
 def resident(process: str) -> float:
-    """Return the resident memory of a process in MB."""
+    """Return a process's resident memory in MB."""
     lines = Path(f"/proc/{process}/status").read_text().splitlines()
     return next(int(line.split()[1]) / 1e3 for line in lines if line.startswith("VmRSS"))
 
 
 def read(parts: list[Path]) -> Iterator[tuple[Floats, Floats]]:
-    """Yield the rewards and times of each record of steps."""
+    """Yield the rewards and times in each record of steps."""
     for part in parts:
         for record in records(part):
             if record["kind"] == "steps":

@@ -3,10 +3,10 @@
     python benchmarks/paper.py [--seeds 20] [--workers 2]
 
 For every seed, the shuttle's transit is recorded as designed (200 episodes), compared in mud (40 episodes), compared in
-the unchanged world (40 episodes), and repaired. Two variants of the transit are also recorded and compared in mud. In
-one, two lines of the node are swapped. In the other, the gain and the wheels have other units (the gain is 0.5 instead
-of 5, which gives the same motion). The true extent of the mud comes from the world, not from a sensor. The line
-follower is also recorded, compared at dusk and repaired.
+the unchanged world (40 episodes), and repaired. Two variants of the transit are also recorded and compared in mud: one
+with two lines of the node swapped, and one with other units for the gain and the wheels (a gain of 0.5 instead of 5,
+which gives the same motion). The true extent of the mud comes from the world, not from a sensor. The line follower is
+also recorded, compared at dusk and repaired.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ VARIANTS = {
 
 @dataclass
 class Study:
-    """A pytest plugin that runs a test's episodes in both worlds and stores the results."""
+    """A pytest plugin that runs a test's episodes in both worlds, and stores the results."""
 
     seed: int
     variant: Variant
@@ -171,7 +171,7 @@ def _quiet(done: int, total: int, what: str) -> None:
 
 
 def _watched_mud() -> list[bool]:
-    """Make the world record in every step whether the robot was on the mud at the start of the step."""
+    """Make the world record, at the start of each step, whether the robot is on the mud."""
     world = sys.modules["world"].World
     seen: list[bool] = []
     publish = world.publish
@@ -185,7 +185,7 @@ def _watched_mud() -> list[bool]:
 
 
 def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool]) -> list[list[int]]:
-    """Return the muddy cells: those with at least half of their steps in mud, and at least 5 % of all steps in mud."""
+    """Return the muddy cells: those with at least half of their steps, and at least 5 % of all steps, in mud."""
     counts: dict[Cell, list[bool]] = {}
     for seed in online.sample.seeds:
         mud.clear()
@@ -200,7 +200,7 @@ def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool])
 
 
 def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str, float]:
-    """Return the share of steps in mud where the guard is true, and of other steps where the guard is false."""
+    """Return the share of steps in mud for which the guard is true, and of other steps for which it is false."""
     hits: dict[bool, list[bool]] = {True: [], False: []}
     patched = Mutants(order).source(candidate)
     for seed in seeds.episode_seeds(order.options.seed, "guard", ONLINE):
@@ -213,7 +213,7 @@ def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str
 
 
 def _peaks(offline: Recorded, online: Recorded, sites: Plan, region: Region) -> dict[str, str]:
-    """For each way to learn the utility, return the code of the site whose slices differ most."""
+    """For each way of learning the utility, return the code of the site whose slices differ most."""
     before, after = aligned(offline.sample, online.sample)
     chosen = {*region.cells, *region.novel}
     rows = np.array([i for i, cell in enumerate(before.cells) if cell in chosen], dtype=np.int64)

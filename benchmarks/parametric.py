@@ -1,4 +1,4 @@
-"""Compare the utility as a table and with tilings on both examples: the region and the line ranked first.
+"""Compare the utility as a table and with tilings, on both examples: the region, and the line ranked first.
 
     python benchmarks/parametric.py            # three seeds, about two minutes
 

@@ -16,7 +16,7 @@ class Expressions(Objects):
         self.depth = 0
 
     def one(self, simple: Sequence[Callable[[], str]], more: Sequence[Callable[[], str]]) -> str:
-        """Return an expression of one of several forms; deeply nested ones are simple."""
+        """Return an expression in one of several forms; if it is deeply nested, the form is simple."""
         self.depth += 1
         try:
             return self.random.choice(simple if self.depth > 3 else [*simple[:1], *more])()
@@ -177,7 +177,7 @@ class Expressions(Objects):
 
     @staticmethod
     def inner(text: str) -> str:
-        """Return an expression for the inside of an f-string, without quotes and backslashes, for Python 3.11."""
+        """Return an expression for use in an f-string: without quotes and backslashes, for Python 3.11."""
         return text if not set("'\\{}!:") & set(text) else "(1 + 2)"
 
     def texts(self) -> str:

@@ -11,7 +11,7 @@ NAMES = ("scan", "arm_left", "arm_right", "base-2", "Wheel7", "lidar", "tilt pan
 
 
 class Objects:
-    """Writes definitions, and returns expressions that use them. Subclasses write expressions of a type."""
+    """Writes definitions, and returns expressions that use them; subclasses write the expressions of each type."""
 
     def __init__(self, source: random.Random) -> None:
         self.random = source
@@ -48,7 +48,7 @@ class Objects:
         return str(self.random.randint(1, 4))
 
     def define(self, kind: str, text: str, **parts: str) -> str:
-        """Add a definition, in which NAME and the names of the parts are replaced; return its name."""
+        """Add a definition in which NAME and the names of the parts are replaced; return its name."""
         name = self.name(kind)
         for key, part in {**parts, "NAME": name}.items():
             text = text.replace(key, part)
@@ -63,7 +63,7 @@ class Objects:
         )
 
     def guarded(self) -> str:
-        """Return the name of a function with exceptions of its own."""
+        """Return the name of a function with its own exceptions."""
         return self.define(
             "guarded",
             DEFINITIONS["guarded"],
@@ -224,7 +224,7 @@ class Objects:
         return self.random.choice((f"{name}.A", f"{name}(('a', 2.5))", f"{name}.B.next()"))
 
     def configured(self) -> str:
-        """Return an object of a data class that has arguments besides its fields."""
+        """Return an object of a data class with arguments that are not fields."""
         name = self.define(
             "Configured",
             DEFINITIONS["Configured"],

@@ -1,7 +1,7 @@
 """Find out which lines of a package each test reaches, at a fraction of the cost of tracing.
 
-In each piece of a function without branches, a statement stores a 1 in memory. All processes of a run share this
-memory, so it also contains the marks of forks and of killed processes. The package is compiled once with these stores;
+In each branch-free piece of a function, an added statement stores a 1 in memory. All processes of a run share this
+memory, so it also has the marks of forks and of killed processes. The package is compiled once with these stores;
 `install` makes imports use the result.
 """
 
@@ -20,8 +20,8 @@ from pathlib import Path
 from types import CodeType
 from typing import Any
 
-NAME = "__reached__"  # the shared memory in builtins: one byte per line of the package
-FOLDER = "REACH_MARKS"  # environment variable with the folder that `compiled` has written
+NAME = "__reached__"  # name of the shared memory in builtins: one byte per line of the package
+FOLDER = "REACH_MARKS"  # environment variable with the folder written by `compiled`
 _COMPOUND = (
     ast.If,
     ast.For,
@@ -38,7 +38,7 @@ _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 @dataclass(frozen=True)
 class Marks:
-    """The marks of a package: `pieces` maps each mark to the file and the lines of its piece."""
+    """The marks of a package; `pieces` maps each mark to the file and lines of its piece."""
 
     pieces: Mapping[int, tuple[str, tuple[int, ...]]]
     memory: mmap.mmap
@@ -54,7 +54,7 @@ class Marks:
         return found
 
     def lines(self, stored: Sequence[int]) -> dict[str, list[int]]:
-        """Return the lines to which the marks belong, by file."""
+        """Return the lines that the marks stand for, by file."""
         found: dict[str, list[int]] = {}
         for mark in stored:
             path, numbers = self.pieces[mark]
@@ -63,9 +63,9 @@ class Marks:
 
 
 def pieces(body: Sequence[ast.stmt]) -> Iterator[list[ast.stmt]]:
-    """Yield the statements of a block in pieces; all statements of a piece run unless an exception ends it.
+    """Yield a block's statements in pieces; all statements of a piece run, unless an exception ends it.
 
-    A compound statement ends a piece, because a `return` inside it may skip the statements after it.
+    A compound statement ends a piece, because a `return` inside it may skip what follows.
     """
     piece: list[ast.stmt] = []
     for statement in body:
@@ -78,9 +78,9 @@ def pieces(body: Sequence[ast.stmt]) -> Iterator[list[ast.stmt]]:
 
 
 def marked(tree: ast.Module, first: int) -> tuple[ast.Module, dict[int, tuple[int, ...]]]:
-    """Add marks to all functions of a module; a mark is `first` plus the number of its line.
+    """Add marks to all functions of a module; a mark is `first` plus its line number.
 
-    Return the module, which is changed in place, and the lines of each mark.
+    Return the module, changed in place, and the lines of each mark.
     """
     found: dict[int, tuple[int, ...]] = {}
     _scope(tree.body, first, found, in_function=False)
@@ -121,7 +121,7 @@ def _inside(statement: ast.stmt, first: int, found: dict[int, tuple[int, ...]], 
 
 
 def _heads(statement: ast.stmt) -> Iterator[int]:
-    """Yield the lines of a statement without its blocks; for a `match`, include the lines of its patterns."""
+    """Yield a statement's lines without its blocks; for a `match`, include the lines of its patterns."""
     if isinstance(statement, _SCOPES):
         return
     blocks = [block for name in ("body", "cases") if (block := getattr(statement, name, None))]
@@ -136,7 +136,7 @@ def _heads(statement: ast.stmt) -> Iterator[int]:
 
 
 def compiled(root: Path, package: str, folder: Path) -> None:
-    """Compile the package below `root` with marks, and write everything that `install` and `marks` read."""
+    """Compile the package in `root` with marks; write everything that `install` and `marks` read."""
     first, files = 0, {}
     spots: dict[int, tuple[str, tuple[int, ...]]] = {}
     for number, file in enumerate(sorted((root / package).rglob("*.py"))):
@@ -153,7 +153,7 @@ def compiled(root: Path, package: str, folder: Path) -> None:
 
 
 def install() -> None:
-    """Make this process import the marked code, if the environment names a folder of `compiled`."""
+    """Make this process import the marked code, if the environment names a folder from `compiled`."""
     name = os.environ.get(FOLDER, "")
     if not name or hasattr(builtins, NAME):
         return
@@ -173,7 +173,7 @@ def install() -> None:
 
 
 def marks() -> Marks:
-    """Return the marks of this process; `install` must have run in it."""
+    """Return this process's marks; `install` must have run in it."""
     read = json.loads((Path(os.environ[FOLDER]) / "pieces.json").read_text())
     return Marks(
         {int(mark): (path, tuple(lines)) for mark, (path, lines) in read.items()}, getattr(builtins, NAME)

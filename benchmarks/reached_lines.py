@@ -1,4 +1,4 @@
-"""The tests that reach each line, read from the contexts of coverage."""
+"""Which tests reach each line, read from coverage's contexts."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from pathlib import Path
 
 @dataclass
 class Reached:
-    """The tests by line, one bit per test, and the CPU seconds that each passing test takes."""
+    """The tests of each line, with one bit per test, and the CPU seconds of each passing test."""
 
     tests: list[str] = field(default_factory=list)
     lines: dict[tuple[str, int], int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
-    everywhere: bool = False  # whether each test counts as reaching each line
+    everywhere: bool = False  # whether every test counts as reaching every line
 
     @classmethod
     def of_files(cls, files: Iterable[str]) -> Reached:
-        """Return the test files as tests that are assumed to reach every line and to take no time."""
+        """Return test files as tests that are assumed to reach every line and to take no time."""
         tests = sorted(files)
         return cls(tests, seconds=dict.fromkeys(tests, 0.0), everywhere=True)
 
@@ -42,8 +42,7 @@ class Reached:
     def within(self, budget: float, tests: Iterable[str], module: str) -> list[str]:
         """Return passing tests that together take at most `budget` CPU seconds, but at least one test.
 
-        Tests in the file named after the module come first, then the other tests. Each group is sorted from fast to
-        slow.
+        Tests in the file named after the module come first, then the others, each group from fast to slow.
         """
         own = f"test_{Path(module).stem}.py"
 
@@ -63,20 +62,20 @@ class Reached:
         self.seconds |= other.seconds
 
     def write(self, file: Path) -> None:
-        """Write everything to a file that `read` reads."""
+        """Write everything to a file for `read`."""
         lines = [[*place, f"{bits:x}"] for place, bits in self.lines.items()]
         file.write_text(json.dumps({"tests": self.tests, "lines": lines, "seconds": self.seconds}))
 
 
 def read(file: Path) -> Reached:
-    """Read a file that `write` has written."""
+    """Read a file written by `write`."""
     data = json.loads(file.read_text())
     lines = {(path, line): int(bits, 16) for path, line, bits in data["lines"]}
     return Reached(data["tests"], lines, data["seconds"])
 
 
 def from_coverage(data: Path, root: Path, seconds: dict[str, float]) -> Reached:
-    """Read the tests by line from coverage's database, which stores lines as bits of a blob."""
+    """Read the tests of each line from coverage's database, which stores lines as bits of a blob."""
     found = Reached(seconds=seconds)
     numbers: dict[str, int] = {}
     query = (

@@ -2,14 +2,14 @@
 
     python benchmarks/readers_sample.py [--sentences 100] [--seed 0] [--beside PROJECT... --key KEY.json]
 
-The pool holds the sentences of README, docs, rule pages, docstrings, comments, messages and help texts, page
-templates and names of tests. Each kind of text has the same share of the sample, since there are far more docstrings
-than messages.
+The pool has the sentences of README, docs, rule pages, docstrings, comments, messages, help texts and page templates,
+and the names of tests. Each kind of text has the same share of the sample, because there are far more docstrings than
+messages.
 
-How many sentences a reader has to read twice depends on the reader. With `--beside`, as many sentences of each of the
-other projects (unpacked source distributions) are drawn in the same way, and all are printed in random order without
-their places, so that the reader does not know which project a sentence belongs to. KEY.json then holds [project, kind,
-place] for each number.
+How many sentences have to be read twice depends on the reader. With `--beside`, equally many sentences of each other
+project (an unpacked source distribution) are drawn in the same way. All are printed in random order without their
+places, so that the reader does not know which project a sentence comes from. KEY.json then has [project, kind, place]
+for each number.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 Sentence = tuple[str, str, str]  # kind, place, text
-Pools = dict[str, list[Sentence]]  # by kind
+Pools = dict[str, list[Sentence]]  # kind → sentences
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = ("tarl_lint", "pytest_tarl", "website", "benchmarks")
@@ -36,7 +36,7 @@ NO_PROSE = re.compile(
 
 
 def main() -> None:
-    """Print the sample, one sentence a line: number, kind, place, text."""
+    """Print the sample, one sentence per line: number, kind, place, text."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--sentences", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
@@ -61,7 +61,7 @@ def main() -> None:
 
 
 def blind(projects: Mapping[str, Pools], sentences: int, seed: int) -> list[tuple[str, Sentence]]:
-    """Return samples of all projects in random order; only kinds of text that every project has are drawn."""
+    """Return samples of all projects in random order, only of the kinds of text that every project has."""
     shared = sorted(set.intersection(*(set(pools) for pools in projects.values())))
     drawn = [
         (project, one)
@@ -73,12 +73,12 @@ def blind(projects: Mapping[str, Pools], sentences: int, seed: int) -> list[tupl
 
 
 def sample(root: Path, sentences: int, seed: int) -> list[Sentence]:
-    """Return a stratified random sample as (kind, place, sentence); the same tree and seed give the same sample."""
+    """Return a stratified random sample of (kind, place, sentence); the same tree and seed give the same one."""
     return draw(pools_of(root, CODE), sentences, seed)
 
 
 def pools_of(root: Path, code: Sequence[str]) -> Pools:
-    """Return the sentences of a project by kind; `code` names its folders of Python files."""
+    """Return a project's sentences by kind; `code` names its folders of Python files."""
     pools: Pools = {}
     for kind, place, sentence in sorted(set(everything(root, code))):
         pools.setdefault(kind, []).append((kind, place, sentence))
@@ -145,7 +145,7 @@ def _of_code(place: str, text: str) -> Iterator[Sentence]:
     last = 0
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT:
-            # a comment at the end of a line of code is a block of its own
+            # a comment at the end of a line of code is a separate block
             beside = bool(token.line[: token.start[1]].strip())
             if block and (beside or token.start[0] != last + 1):
                 yield from _of("comment", place, [" ".join(block)])

@@ -1,9 +1,9 @@
-"""Measure the cost of recording, and of coverage tools in the same run.
+"""Measure the cost of recording and, in the same run, that of coverage tools.
 
-`python benchmarks/recording.py` prints the tables. Each program runs bare, with an empty hook (the least possible
-overhead), as the plugin instruments it, under coverage.py's C tracer, and under slipcover. Slipcover keeps its
-probes, since it would stop counting without them. The runs alternate, and the best of each kind counts. Times are CPU
-times of the process.
+`python benchmarks/recording.py` prints the tables. Each program runs plain, with an empty hook (the least possible
+overhead), as the plugin instruments it, with coverage.py's C tracer, and with slipcover (which keeps its probes,
+because it would otherwise stop counting). The runs alternate, and the best of each kind counts. Times are CPU times of
+the process.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.learning.statistics import sample
 
-os.environ["COVERAGE_CORE"] = "ctrace"  # newer versions of Python would use sys.monitoring
+os.environ["COVERAGE_CORE"] = "ctrace"  # newer Python versions would use sys.monitoring
 TURNS = 60
-ROUNDS = 2_000  # number of rounds; they record about ten thousand events, as an episode does
+ROUNDS = 2_000  # rounds, which record about ten thousand events, as an episode does
 STEPS = 200
-DISCS = 340  # number of discs with which a step takes about 200 µs
+DISCS = 340  # number of discs for which a step takes about 200 µs
 RUNS = 12
-STARTS = 41  # number of starts of pytest, with and without the plugin
+STARTS = 41  # starts of pytest, with and without the plugin
 
 STRAIGHT = """
 def work(rounds):
@@ -109,7 +109,7 @@ def compiled(source: str, *, inline: bool) -> CodeType:
 
 
 def prepared(code: CodeType, space: dict[str, Any], name: str = "work") -> Callable[..., Any]:
-    """Execute the definitions of a program and return its `work`, or another function."""
+    """Execute a program's definitions and return its `work`, or another function."""
     exec(code, space)  # noqa: S102
     work: Callable[..., Any] = space[name]
     return work
@@ -123,7 +123,7 @@ def seconds(work: Callable[[int], None]) -> float:
 
 
 def measured(source: str) -> tuple[dict[str, float], int]:
-    """Return the best seconds of a program for each way to run it, and the number of events per run."""
+    """Return a program's best seconds for each way of running it, and its number of events per run."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "program.py"
         file.write_text(source)
@@ -143,7 +143,7 @@ def bare(source: str, file: Path) -> float:
 
 
 def hooked(source: str, _file: Path) -> float:
-    """Time a program that calls a hook which does nothing."""
+    """Time a program whose hook does nothing."""
     return seconds(prepared(bound(compiled(source, inline=False), lambda _number, value: value), {}))
 
 
@@ -155,7 +155,7 @@ def recorded(source: str) -> tuple[float, int]:
 
 
 def traced(source: str, file: Path) -> float:
-    """Time a program under coverage.py's C tracer, lines only."""
+    """Time a program with coverage.py's C tracer, lines only."""
     coverage = Coverage(data_file=None, config_file=False, include=[str(file)])
     work = prepared(compile(source, str(file), "exec"), {})
     coverage.start()
@@ -166,14 +166,14 @@ def traced(source: str, file: Path) -> float:
 
 
 def covered(source: str, file: Path) -> float:
-    """Time a program under slipcover, lines only."""
+    """Time a program with slipcover, lines only."""
     counter = Slipcover(d_miss_threshold=-1, source=[str(file.parent)])
     space: dict[str, Any] = {}
     return seconds(prepared(counter.instrument(compile(source, str(file), "exec")), space))
 
 
 def control_step() -> tuple[float, float]:
-    """Return the microseconds of a step of a pymunk world with a controller of 20 sites: bare, and recorded."""
+    """Return the microseconds per step of a pymunk world with a controller of 20 sites: plain, and recorded."""
     sites = "\n".join(f"    v{i} = {'x' if i % 2 else 'node.kp'} * {i + 0.5}" for i in range(20))
     source = f"def control(node, x):\n{sites}\n    return v19\n"
     plain = prepared(compile(source, "<program>", "exec"), {}, "control")
@@ -188,7 +188,7 @@ def control_step() -> tuple[float, float]:
 
 
 def called(control: Callable[[Any, float], float]) -> float:
-    """Return the microseconds per call of the controller alone; the noise of world steps would hide them."""
+    """Return the microseconds per call of the controller alone, which the noise of world steps would hide."""
     node = SimpleNamespace(kp=0.4)
     start = time.process_time()
     for i in range(STEPS):
@@ -197,7 +197,7 @@ def called(control: Callable[[Any, float], float]) -> float:
 
 
 def stepped(control: Callable[[Any, float], float]) -> float:
-    """Return microseconds per step of a world of discs in a box, with one call of the controller per step."""
+    """Return the microseconds per step of a world of discs in a box, with one call of the controller."""
     world = pymunk.Space()
     world.gravity = (0.0, -9.8)
     world.add(pymunk.Segment(world.static_body, (0, 0), (40, 0), 0.5))
@@ -214,7 +214,7 @@ def stepped(control: Callable[[Any, float], float]) -> float:
 
 
 def finishing() -> tuple[float, float]:
-    """Return how many million events per second are converted from the buffer to a trace, and to statistics."""
+    """Return how many million events per second are converted from buffer to trace, and to statistics."""
     best = [float("inf")] * 2
     for _ in range(10):
         recorder = Recorder()
@@ -256,11 +256,11 @@ def importing(source: str, sites: int) -> tuple[float, float, float]:
 
 
 def starting() -> tuple[float, float]:
-    """Return the CPU milliseconds of a pytest run of one empty test, without our plugin and with it.
+    """Return the CPU milliseconds of a pytest run of one empty test, without and with our plugin.
 
     No other plugins are active.
 
-    Both are medians of alternating runs, because single runs differ by more than the cost of the plugin.
+    Both are medians of alternating runs, because single runs differ by more than the plugin's cost.
     """
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "test_it.py").write_text("def test_it(): pass\n")
@@ -282,7 +282,7 @@ def starting() -> tuple[float, float]:
                 subprocess.run(command, cwd=folder, env=alone, check=True, capture_output=True)
                 after = resource.getrusage(resource.RUSAGE_CHILDREN)
                 times.append((after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime) * 1e3)
-    # leave out the first run of each variant, because this run writes bytecode
+    # the first run of each variant writes bytecode, so it does not count
     return median(spent[0][1:]), median(spent[1][1:])
 
 
@@ -296,7 +296,7 @@ def main() -> None:
         help="run everything once, to test the script; the figures are not meaningful",
     )
     if parser.parse_args().quick:
-        TURNS, RUNS, STARTS = 1, 1, 2  # two starts, because the first one is not counted
+        TURNS, RUNS, STARTS = 1, 1, 2  # two starts, because the first does not count
     names = ("recorded", "an empty hook", "coverage.py", "slipcover")
     print(f"| ns per event over the bare program | {' | '.join(names)} | goal | events |")
     print("|---|---|---|---|---|---|---|")

@@ -1,7 +1,7 @@
-"""Measure episodes per second (100 control steps each) of small rospy and rclpy nodes, in-process and on a real ROS.
+"""Measure episodes per second (of 100 control steps) of small rospy and rclpy nodes, in-process and on a real ROS.
 
-Run `python benchmarks/ros.py`, with the Python of `.venv-ros1` or `.venv-ros2` (`make setup-ros1 setup-ros2`) for the
-real ones. In every episode, the robot must take the same path, equal to the last bit, even on the real ROS.
+Run `python benchmarks/ros.py`; for a real ROS, use the Python of `.venv-ros1` or `.venv-ros2` (`make setup-ros1
+setup-ros2`). The robot must take the same path in every episode, to the last bit, even on a real ROS.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def episode(program: Callable[[], None], odometry_type: type[Any], ros: Ros) -> 
 
 
 def real(library: str) -> Callable[[], Ros] | None:
-    """Return a factory of episodes on the real ROS, or None if it is not installed."""
+    """Return a factory of episodes on a real ROS, or None if it is not installed."""
     if PathFinder.find_spec(library) is None:
         return None
     if library == "rospy":
@@ -111,7 +111,7 @@ def measured(
     path: list[float],
     seconds: float,
 ) -> tuple[float, float, bool]:
-    """Return episodes per CPU second and per second of wall time, and whether all episodes took the given path."""
+    """Return episodes per CPU second and per wall second, and whether all episodes took the given path."""
     same, count, cpu, wall = True, 0, process_time(), perf_counter()
     while process_time() - cpu < seconds:
         same &= episode(program, odometry, make()) == path

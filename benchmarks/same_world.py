@@ -1,13 +1,12 @@
-"""Measure how often a world appears to differ from itself, by recording it and comparing it with new seeds.
+"""Measure how often a world appears to differ from itself when it is recorded and then compared with new seeds.
 
     python benchmarks/same_world.py [--comparisons 10] [--worlds shuttle …] [--committed] [--workers 2]
 
-Thirty worlds: the tasks of benchmarks/drift, the examples, one task of benchmarks/drift_judging, and those of
-benchmarks/same_worlds. No two of them draw the same episodes. Each comparison is a `pytest --tarl-record` and a
-`pytest --tarl-online` with their own seeds. The result of a comparison is read from the JSON that the second
-command writes. With `--committed` a world is recorded once and compared repeatedly, as in CI. Results are
-appended to a file (--found). Comparisons in the file are not repeated, so a run can be interrupted and
-resumed.
+There are thirty worlds: the tasks of benchmarks/drift, the examples, one task of benchmarks/drift_judging, and those of
+benchmarks/same_worlds. No two of them draw the same episodes. A comparison consists of a `pytest --tarl-record` and a
+`pytest --tarl-online`, each with its own seeds; its result is read from the JSON that the second command writes. With
+`--committed`, a world is recorded once and compared repeatedly, as in CI. Results are appended to a file (--found), and
+comparisons in this file are not repeated, so a run can be interrupted and resumed.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"
 FOUND = HERE.parent / ".tarl-same-world.jsonl"
 BATCH = 10  # number of comparisons per process
-ONLINE_SEEDS = 1_000_000  # added to the number of a comparison, to get seeds that no recording has
+ONLINE_SEEDS = 1_000_000  # added to a comparison's number, to get seeds that no recording has
 SPARED = shutil.ignore_patterns(".tarl", "__pycache__", "answer.json")
 
 
@@ -65,11 +64,11 @@ def worlds() -> dict[str, World]:
 
 
 class Undrifted:
-    """A pytest plugin that removes the drifts from markers, so that a comparison runs the designed world."""
+    """A pytest plugin that removes drifts from markers, so that a comparison runs the designed world."""
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """Remove the drifts of a test before its scenarios are generated."""
+        """Remove a test's drifts before its scenarios are generated."""
         marker = metafunc.definition.get_closest_marker("tarl")
         if marker is not None and isinstance(marker.kwargs, dict):
             marker.kwargs.pop("drifts", None)
@@ -95,7 +94,7 @@ def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Itera
 
 
 def ran(world: World, *flags: str) -> None:
-    """Run pytest. Raise RuntimeError if it does not reach a verdict."""
+    """Run pytest. Raise RuntimeError if it reaches no verdict."""
     quiet = ("-q", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", ".")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         status = pytest.main(["-W", "ignore", *quiet, world.test, *flags], [Undrifted()])
@@ -106,7 +105,7 @@ def ran(world: World, *flags: str) -> None:
 def batches(
     chosen: Iterable[str], asked: int, committed: bool, done: set[tuple[str, bool, int]]
 ) -> Iterator[tuple[str, list[int]]]:
-    """Yield batches of missing comparisons, from all worlds in turn."""
+    """Yield batches of missing comparisons, taking all worlds in turn."""
     names = list(chosen)
     for first in range(0, asked, BATCH):
         for name in names:
@@ -117,7 +116,7 @@ def batches(
 
 
 def compared(name: str, numbers: Sequence[int], committed: bool) -> list[dict[str, Any]]:
-    """Run a batch in its own process; if it crashes, keep the results so far."""
+    """Run a batch in a separate process; if it crashes, keep the results so far."""
     command = [sys.executable, __file__, "--worlds", name, "--numbers", *map(str, numbers)]
     ended = subprocess.run(
         [*command, *(["--committed"] if committed else [])],
@@ -137,7 +136,7 @@ def read(path: Path) -> list[dict[str, Any]]:
 
 
 def table(found: Sequence[dict[str, Any]], committed: bool) -> Iterator[str]:
-    """Yield a Markdown table: how often each world appeared to differ from itself."""
+    """Yield a Markdown table that shows how often each world appeared to differ from itself."""
     yield "| world | comparisons | drifted | degraded | smallest p_drift |\n|---|---|---|---|---|"
     chosen = [one for one in found if one["committed"] == committed]
     for name in [*dict.fromkeys(one["world"] for one in chosen), "all"]:

@@ -1,8 +1,8 @@
-"""Measure false alarms of the drift test by random splits of one long recording.
+"""Measure the drift test's false alarms on random splits of one long recording.
 
     python benchmarks/same_world_resampled.py shuttle [--episodes 4000] [--splits 2500] [--seed 0]
 
-`same_world.py` makes a recording for each comparison, which takes seconds. Here `pytest --tarl-record` runs a world
+`same_world.py` makes a recording for each comparison, which takes seconds. Here, `pytest --tarl-record` runs a world
 once, with many episodes. Each split draws 200 of them as the designed world and 40 as the deployed world, which takes
 50 ms. If the recording is many times longer than a split, the share of splits with p below a level estimates the true
 rate of false alarms at that level.
@@ -27,7 +27,7 @@ from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.learning.tables import Ints, Sample
 
-DESIGNED, DEPLOYED = 200, 40  # numbers of episodes of a recording and of a comparison; the plugin's defaults
+DESIGNED, DEPLOYED = 200, 40  # episodes of a recording and of a comparison (the plugin's defaults)
 LEVELS = (0.01, 0.05, 0.1, 0.25, 0.5)
 
 
@@ -64,7 +64,7 @@ def recorded(world: World, episodes: int) -> Fixture:
 
 
 def chosen(sample: Sample, episodes: Ints) -> Sample:
-    """Return the sample of the given episodes (indices in ascending order)."""
+    """Return the sample of these episodes (indices in ascending order)."""
     place = np.full(sample.episodes, -1)
     place[episodes] = np.arange(len(episodes))
     rows = place[sample.chain.episode] >= 0

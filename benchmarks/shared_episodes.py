@@ -1,13 +1,14 @@
-"""Compare `--tarl-total` with an even split of the same episodes: how often drifts of known size are found.
+"""Compare `--tarl-total` with an even split of the same episodes: how often are drifts of known size found?
 
     python benchmarks/shared_episodes.py [--runs 1000] [--total 160] [--recorded 60] [--seed 0]
 
 Totals of episodes are normal with standard deviation 1; a drift of size d lowers their mean by d. All drifts of a world
 are compared with one recording. The script uses the plugin's schedule of interim tests, its permutation test, and its
 rule for which comparison continues. It ignores regions of sensor space, so a loss counts as found as soon as it is
-significant. Comparisons may end early. The row "even, as many run" therefore uses a larger even share: the smallest one
-with which the comparisons run, on average, as many episodes as with the shared total. A user cannot know this share
-beforehand.
+significant.
+
+Comparisons may end early. The row "even, as many run" therefore uses a larger even share: the smallest one for which
+the comparisons run, on average, as many episodes as with the shared total. Users cannot know this share in advance.
 """
 
 from __future__ import annotations
@@ -36,19 +37,19 @@ DRIFTS = (
     (0.6,) * 4,
     (0.0,) * 4,
 )
-Result = tuple[list[bool], int]  # whether each drift was found, and the number of episodes run
+Result = tuple[list[bool], int]  # whether each drift was found, and how many episodes ran
 
 
 @dataclass(frozen=True)
 class World:
-    """The recorded total rewards, and for each drift enough total rewards for every rule."""
+    """The recorded total rewards and, for each drift, enough total rewards for every rule."""
 
     recorded: Floats
     drifts: Sequence[Floats]
     known: dict[tuple[int, int, int], float] = field(default_factory=dict)
 
     def p_value(self, drift: int, look: Look, looks: Sequence[Look]) -> float:
-        """Return the p-value of the loss at an interim test; equal numbers of episodes always give the same p-value."""
+        """Return a loss's p-value at an interim test; equal numbers of episodes always give the same p-value."""
         permutations = permutations_for(ALPHA, int(np.ceil(1 / looks[0].share)))
         key = drift, look.episodes, permutations
         if key not in self.known:
@@ -59,7 +60,7 @@ class World:
 
 
 def even(world: World, share: int, looks: int) -> Result:
-    """Compare each drift separately, each with the same number of episodes."""
+    """Compare each drift separately, all with the same number of episodes."""
     plan = planned(share, looks)
     found, run = [], 0
     for drift in range(len(world.drifts)):
@@ -88,7 +89,7 @@ def shared(world: World, total: int) -> Result:
 
 
 def measured(rule: Callable[[World], Result], worlds: Sequence[World]) -> tuple[Floats, float]:
-    """Return how often each drift was found, shape (drifts,), and the mean number of episodes run."""
+    """Return how often each drift was found, shape (drifts,), and the mean number of episodes."""
     results = [rule(world) for world in worlds]
     return np.mean([found for found, _ in results], axis=0), float(np.mean([run for _, run in results]))
 
@@ -118,7 +119,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _compared(worlds: Sequence[World], total: int, share: int) -> None:
-    """Print the results of the rules; `share` is the number of episodes per drift in an even split."""
+    """Print the rules' results; `share` is the number of episodes per drift in an even split."""
     pooled = measured(partial(shared, total=total), worlds)
     _print("shared", pooled)
     _print("even, looks", measured(partial(even, share=share, looks=Options.LOOKS), worlds))

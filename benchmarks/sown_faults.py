@@ -1,4 +1,4 @@
-"""Small faults in a source file: the places where they are possible, and the text with one of them inserted."""
+"""Small faults in a source file: where they are possible, and the text with one of them inserted."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-# kinds of statements that get no faults, because not every message needs a test
+# statements of these kinds get no faults, because not every message needs a test
 _UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)
 
 
 @dataclass(frozen=True, order=True)
 class Fault:
-    """A replacement of a piece of a file, given by its byte offsets."""
+    """The replacement of a piece of a file, given by byte offsets."""
 
     path: str
     line: int
@@ -70,16 +70,16 @@ class Fault:
 
     @property
     def name(self) -> str:
-        """Return a name that is stable under edits elsewhere in the file."""
+        """Return a name that does not change when the file is edited elsewhere."""
         return f"{self.path}: {self.kind}: {' '.join(self.was.split())} → {' '.join(self.now.split())}"
 
     def sown(self, text: bytes) -> bytes:
-        """Return the text of the file with the fault."""
+        """Return the file's text with the fault."""
         return text[: self.start] + self.now.encode() + text[self.end :]
 
 
 def faults(path: Path, name: str) -> list[Fault]:
-    """Return every fault of a file that still compiles."""
+    """Return all faults in a file that still compile."""
     data = path.read_bytes()
     tree = ast.parse(data)
     found = sorted(set(_Finder(data, name).module(tree)))
@@ -88,7 +88,7 @@ def faults(path: Path, name: str) -> list[Fault]:
 
 
 def _last_line(statement: ast.stmt) -> int:
-    """Return the last line of a statement, not counting the statements inside it."""
+    """Return a statement's last line, without the statements inside it."""
     if isinstance(statement, ast.Match):
         return statement.subject.end_lineno or statement.lineno
     inside: list[ast.stmt] = getattr(statement, "body", [])
@@ -111,11 +111,11 @@ def _outermost(tree: ast.Module, data: bytes) -> list[tuple[int, int]]:
 
 
 def _compiles(fault: Fault, data: bytes, functions: list[tuple[int, int]]) -> bool:
-    """Return whether the outermost function with the fault compiles; it is much shorter than its file."""
+    """Return whether the fault's outermost function compiles, which is much faster than compiling the file."""
     start, end = functions[bisect_right(functions, (fault.start, len(data))) - 1]
     text = data[start : fault.start] + fault.now.encode() + data[fault.end : end]
     if text[:1].isspace():
-        text = b"if True:\n" + text  # a method is indented, so its text needs a block around it
+        text = b"if True:\n" + text  # an indented method needs a block around it
     try:
         compile(text, "<mutant>", "exec", dont_inherit=True)
     except (SyntaxError, ValueError):
@@ -124,7 +124,7 @@ def _compiles(fault: Fault, data: bytes, functions: list[tuple[int, int]]) -> bo
 
 
 class _Finder:
-    """Collect the faults of a module in one pass."""
+    """Collect a module's faults in one pass."""
 
     def __init__(self, data: bytes, name: str) -> None:
         self._data = data
@@ -134,7 +134,7 @@ class _Finder:
             self._lines.append(self._lines[-1] + len(line) + 1)
 
     def module(self, tree: ast.Module) -> Iterator[Fault]:
-        """Yield the faults of all functions; module-level code is mostly declarations."""
+        """Yield the faults of all functions; code outside functions is mostly declarations."""
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not node.name.startswith(
                 "__repr"
@@ -159,7 +159,7 @@ class _Finder:
                 yield from self._block(case.body)
 
     def _guard(self, case: ast.match_case) -> Iterator[Fault]:
-        """Yield the faults of the guard of a `case`: the condition after `if`."""
+        """Yield the faults in the guard of a `case` (the condition after `if`)."""
         assert case.guard is not None
         lines = tuple(range(case.pattern.lineno, (case.guard.end_lineno or case.guard.lineno) + 1))
         for fault in (

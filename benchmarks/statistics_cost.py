@@ -1,10 +1,10 @@
-"""Measure the cost of computing the statistics from a buffer and the utility from the statistics, and its growth.
+"""Measure what it costs to compute statistics from a buffer and the utility from statistics, and how this grows.
 
     python benchmarks/statistics_cost.py            # about a minute
     python benchmarks/statistics_cost.py --workers  # also records with one and two worker processes
 
-The file is not called statistics.py, because that would shadow the standard module for scripts in this folder. Times
-are CPU times of this process, the minimum of several; the speed-up by workers is wall time.
+The file is not named statistics.py, which would shadow the standard module for scripts in this folder. Times are CPU
+times of this process, the minimum of several; the speed-up by workers is in wall time.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def main() -> None:
 
 
 def throughput(events: int = 1_000_000) -> Iterator[str]:
-    """Measure the throughput from a recorder's buffer to the statistics of one episode."""
+    """Measure the throughput from a recorder's buffer to an episode's statistics."""
     steps = events // SITES
     recorder = recorded(steps)
     whole = least(lambda: sample(recorder().finish(), 0, True, [range(SITES)]))
@@ -75,7 +75,7 @@ def throughput(events: int = 1_000_000) -> Iterator[str]:
 
 
 def recorded(steps: int) -> Callable[[], Recorder]:
-    """Return a factory of recorders with `steps` steps of events in their buffer."""
+    """Return a factory of recorders with `steps` steps of events in the buffer."""
     draws = np.random.default_rng(0)
     cells = np.abs(np.cumsum(draws.integers(-1, 2, steps))) % 48
     rewards = draws.normal(size=steps).tolist()
@@ -94,7 +94,7 @@ def recorded(steps: int) -> Callable[[], Recorder]:
 
 
 def solving() -> Iterator[str]:
-    """Measure the time to compute the utility from all episodes at once."""
+    """Measure how long it takes to compute the utility from all episodes at once."""
     chained = walk(episodes=200, steps=400, cells=2000, sites=0)
     measured = least(lambda: chain_utility(chained.chain, 2000)) * 1e3
     seen = len(np.unique(chained.chain.cell))
@@ -106,7 +106,7 @@ def solving() -> Iterator[str]:
 
 
 def growth() -> Iterator[str]:
-    """Measure time, peak memory and file size against the number of events, cells, lists and episodes."""
+    """Measure how time, peak memory and file size grow with the number of events, cells, lists and episodes."""
     base = {"episodes": 50, "steps": 400, "cells": 50, "lists": 1}
     for grown, label in (
         ("steps", "events"),
@@ -121,7 +121,7 @@ def growth() -> Iterator[str]:
 
 
 def cost(episodes: int, steps: int, cells: int, lists: int) -> tuple[float, float, float, float]:
-    """Return the ms to count events and to compute the utility, the peak memory (MB), and the recording's size (kB)."""
+    """Return the ms to count events and compute the utility, the peak memory (MB), and the recording's size (kB)."""
     traces = [episode(seed, steps, cells, SITES) for seed in range(episodes)]
     members = [range(SITES)] * lists
 
@@ -161,7 +161,7 @@ def walk(episodes: int, steps: int, cells: int, sites: int) -> Sample:
 
 
 def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
-    """Return an episode in which every step visits all sites, in a cell near the previous one."""
+    """Return an episode whose steps visit all sites, each step in a cell near the previous one."""
     draws = np.random.default_rng(seed)
     cell = (draws.integers(cells) + np.cumsum(draws.integers(-1, 2, steps))) % cells
     names, place = np.unique(cell, return_inverse=True)
@@ -181,9 +181,8 @@ def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
 def speed_up() -> Iterator[str]:
     """Record the examples in one process and with two workers.
 
-    With two free cores, the ratio of wall times is the speed-up. The CPU time of the main process and of its workers
-    does not depend on other load. With one core per worker, a run takes the CPU time of the main process plus half of
-    the workers' CPU time.
+    With two free cores, the speed-up is the ratio of wall times. CPU times of the main process and its workers do not
+    depend on other load. With one core per worker, a run takes the main process's CPU time plus half of the workers'.
     """
     for example, test, episodes in RECORDINGS:
         what = f"{example}, {episodes} episodes"
@@ -195,7 +194,7 @@ def speed_up() -> Iterator[str]:
 
 
 def recorded_example(example: str, test: str, episodes: int, workers: int) -> tuple[float, float, float]:
-    """Return the CPU seconds of a recording and of its workers, and its wall seconds, without the start of pytest."""
+    """Return CPU seconds of a recording and of its workers, and wall seconds, without pytest's start."""
     source = Path(__file__).resolve().parent.parent / "examples" / example
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder, example)
@@ -210,7 +209,7 @@ def recorded_example(example: str, test: str, episodes: int, workers: int) -> tu
 
 
 def least(work: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Return the minimum CPU time of several runs, in seconds."""
+    """Return the minimum CPU time of several runs in seconds."""
     times = []
     for _ in range(repeats):
         before = time.process_time()

@@ -1,13 +1,13 @@
-"""Compare the boundaries that stress runs find with an exhaustive grid, and count false boundaries.
+"""Compare the boundaries found by stress runs with an exhaustive grid, and count false boundaries.
 
     python benchmarks/stress.py [TASK ...] [--harmless 25] [--grids FILE]
 
 The tasks are those of benchmarks/drift and stress_examples.py. Each has one direction, from its nominal value to its
-drift. The grid has 41 values, each with 40 episodes on its own seeds. The boundary of the grid is where the
-interpolated margin first crosses zero. A line for each task gives both boundaries as shares of the range, the distance
-between them, and the numbers of episodes. With `--harmless N`, each task also gets N runs on the part of the range
-below half of the grid's boundary; a boundary that such a run reports is false. With `--grids`, the grid's boundary of
-each task is added to a JSON Lines file; boundaries that the file contains are not measured again.
+drift. The grid has 41 values, each with 40 episodes on its own seeds; its boundary is where the interpolated margin
+first crosses zero. A line per task gives both boundaries as shares of the range, their distance, and the numbers of
+episodes. With `--harmless N`, each task also gets N runs on the part of the range below half of the grid's boundary;
+any boundary that these report is false. With `--grids`, the grids' boundaries are stored in a JSON Lines file; those
+already in the file are not measured again.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed, outc
 from pytest_tarl.stressing.rays import rays  # noqa: E402
 from pytest_tarl.stressing.stress_run import along_rays, near_ends  # noqa: E402
 
-GRID, EPISODES = 41, 40  # number of values, and number of episodes at each of them
+GRID, EPISODES = 41, 40  # number of values, and episodes per value
 RECORDED = 100
 SHARE = 0.15  # share of the grid's episodes that a stress run may use
-NEAR = 0.05  # two boundaries agree if their distance is at most this share of the range
-RISK = 0.05 / 3  # alpha of a run, divided among three tests: of its ray, combinations and nominal drift
+NEAR = 0.05  # two boundaries agree if they are at most this share of the range apart
+RISK = 0.05 / 3  # a run's alpha, divided among the tests of its ray, of combinations and of nominal
 
 
 def span_of(low: float, high: float) -> Space:
@@ -55,7 +55,7 @@ def run_at(rollout: Sized, size: float, seeds: Sequence[int]) -> list[Outcome]:
 
 
 def recorded(rollout: Sized, nominal: float) -> Guarantee:
-    """Return what a recording of the nominal world guarantees."""
+    """Return the guarantee from a recording of the nominal world."""
     runs = run_at(rollout, nominal, episode_seeds(11, "offline", RECORDED))
     stated = rollout.stage.marked.tolerance or 0.0
     tolerance = max(0.05 * abs(fmean(one.total for one in runs)), stated)
@@ -78,7 +78,7 @@ def exhaustive(rollout: Sized, given: Guarantee, nominal: float, far: float) -> 
 
 
 def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: int) -> tuple[Curve, int]:
-    """Return the curve of a stress run in one direction, and the number of its episodes."""
+    """Return the curve of a stress run in one direction, and its number of episodes."""
     evaluator = Evaluator(rollout, space, "stress", given, seed, budget, lambda *_: None)
     (curve,) = (Curve(ray) for ray in rays(space, {}))
     with suppress(BudgetSpentError):
@@ -89,7 +89,7 @@ def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: 
 
 @dataclass(frozen=True)
 class Compared:
-    """One task: boundaries as shares of the range, episodes of the run, and false boundaries in harmless runs."""
+    """A task: boundaries as shares of the range, the run's episodes, and false boundaries in harmless runs."""
 
     grid: float | None
     found: float | None
@@ -103,7 +103,7 @@ class Compared:
     def contains(self) -> bool:
         """Return whether the interval contains the grid's boundary.
 
-        If the grid has no boundary, the run is right if it finds none.
+        If the grid has no boundary, this means that the run finds none.
         """
         if self.grid is None or self.found is None:
             return self.grid is None and self.found is None
@@ -111,7 +111,7 @@ class Compared:
 
     @property
     def line(self) -> str:
-        """Return the columns of the table, from the grid's boundary on."""
+        """Return the columns of the table, starting with the grid's boundary."""
         grid, found = (f"{one:.3f}" if one is not None else "none" for one in (self.grid, self.found))
         interval = "none" if self.found is None else f"{self.near or 0.0:.3f}–{self.far:.3f}"
         return (
@@ -122,12 +122,12 @@ class Compared:
 
 @dataclass(frozen=True)
 class Grids:
-    """The grids' boundaries by task, kept in a JSON Lines file."""
+    """The grids' boundaries by task, stored in a JSON Lines file."""
 
     path: Path | None
 
     def boundary(self, task: str, measure: Callable[[], float | None]) -> float | None:
-        """Return a task's boundary; measure it if it is not in the file."""
+        """Return a task's boundary, measured if it is not in the file."""
         lines = self.path.read_text().splitlines() if self.path is not None and self.path.exists() else []
         known = dict(map(json.loads, lines))
         if task not in known:
@@ -140,7 +140,7 @@ class Grids:
 
 
 def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
-    """Compare a stress run of one task with the grid."""
+    """Compare a stress run of a task with the grid."""
     example = EXAMPLES.get(stage.task)
     rollout, nominal, far = sized(stage, example.drift if example else stage.drift)
     given = recorded(rollout, nominal)
@@ -166,7 +166,7 @@ def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
 
 
 def agrees(one: Compared) -> bool:
-    """Return whether grid and stress run found boundaries that are near each other, or neither found one."""
+    """Return whether grid and stress run found boundaries near each other, or both found none."""
     if one.grid is None or one.found is None:
         return one.grid is None and one.found is None
     return abs(one.grid - one.found) <= NEAR

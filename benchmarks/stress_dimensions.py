@@ -7,17 +7,20 @@
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours confirmed random …]
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas. Those of stress_worlds_3.py to stress_worlds_14.py
-are small simulations, written without knowledge of the search. From stress_worlds_5.py on, the drifts have units, and a
+are small simulations, written without knowledge of the search. From stress_worlds_5.py on, drifts have units, and the
 nominal value can be anywhere in its range. Each task of benchmarks/drift has four directions: its own drift, from the
-nominal value to that of the task, and three faults of the topic of its first numeric sensor (bias, latency, dropout),
-of the same relative size in every task. Each method may run BUDGET episodes. A peer, which is another search, receives
-a cost for each drift that it proposes. If the guarantee fails on PROBES common seeds, the cost is the distance from
-nominal, as a share of the largest distance. Otherwise, the cost is 1 plus the margin by which the guarantee holds. A
-failure counts only if fresh seeds confirm it; episodes on these seeds are not part of BUDGET. Each method may offer its
-OFFERS nearest failing drifts; the k-th of them is tested at the level RISK / k(k + 1). A stress run offers the drifts
-that it confirmed with episodes of its budget, and those that it only expects to fail. The method `confirmed` offers
-only the confirmed drifts of the same run. A cell of the table counts the seeds on which `ours` and `confirmed` find a
-failure at least as near as that of the peer.
+nominal value to the task's, and three faults on the topic of its first numeric sensor (bias, latency, dropout), of the
+same relative size in every task.
+
+Each method may run BUDGET episodes. The other methods, the peers, get a cost for each drift that they propose. If the
+guarantee fails on PROBES common seeds, the cost is the distance from nominal, as a share of the largest distance.
+Otherwise it is 1 plus the margin by which the guarantee holds.
+
+A failure counts only if fresh seeds confirm it; episodes on these seeds are not part of BUDGET. Each method may offer
+its OFFERS nearest failing drifts, the k-th of which is tested at level RISK / k(k + 1). A stress run offers the drifts
+that it confirmed within its budget, and those that it only expects to fail. The method `confirmed` offers only the
+confirmed drifts of the same run. A cell of the table counts the seeds for which `ours` and `confirmed` find a failure
+that is at least as near as the peer's.
 """
 
 from __future__ import annotations
@@ -93,25 +96,25 @@ HARMLESS: Mapping[str, World | Machine] = {  # worlds in which no point of the s
     **TWELFTH_QUIET,
     **THIRTEENTH_QUIET,
 }
-BUDGET = 600  # maximum number of episodes of a run
-PROBES = 4  # number of episodes at each drift that a peer proposes
-OFFERS = 10  # maximum number of a method's failing drifts that are tested on fresh seeds
+BUDGET = 600  # maximum number of episodes per run
+PROBES = 4  # episodes at each drift that a peer proposes
+OFFERS = 10  # maximum number of a method's failing drifts to test on fresh seeds
 RECORDED = 100
 RISK = 0.05  # risk of the test on fresh seeds
-SIZES = (16, 32, 64)  # numbers of fresh episodes after which the test ends if it succeeds
+SIZES = (16, 32, 64)  # numbers of fresh episodes after which the test may end with success
 SIZE = "size"
 SCENARIO = "stress"
-LARGEST = 2.0  # upper limit of distances; no drift of a space with four directions is farther from nominal
+LARGEST = 2.0  # upper limit of distances; in four directions, no drift is farther from nominal
 FORMULA = Designation(
     (), (), min_success=0.95, tolerance=TOLERANCE
-)  # the arguments of the marker for the worlds that are formulas
-# the two results of a stress run: all failing drifts, and only the confirmed ones
+)  # marker arguments of the worlds that are formulas
+# the results of a stress run: all failing drifts, and only the confirmed ones
 OWN = ("ours", "confirmed")
 PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
 
 
 class Numbered(Space):
-    """A space for a test whose drift is a single number, as in the tests of benchmarks/drift."""
+    """A space for a test whose drift is a single number, as in benchmarks/drift."""
 
     def world(self, point: Point) -> Any:
         """Return the value of the task's own drift."""
@@ -122,7 +125,7 @@ class Numbered(Space):
 
 @dataclass(frozen=True)
 class Arena:
-    """A task in four directions, with the guarantee of its recording."""
+    """A task in four directions, with its recording's guarantee."""
 
     task: str
     rollout: Rollout
@@ -135,7 +138,7 @@ class Arena:
 
 
 def space_of(stage: Stage) -> Numbered:
-    """Return the four directions of a task."""
+    """Return a task's four directions."""
     usual, far = float(nominal_of(stage)), float(stage.marked.drifts[stage.drift].value)
     sensor = next(one for one in stage.marked.sensors if one.low is not None)
     assert sensor.low is not None
@@ -152,7 +155,7 @@ def space_of(stage: Stage) -> Numbered:
 
 
 def arena(stage: Stage) -> Arena:
-    """Return a task in four directions, recorded."""
+    """Return a task in four directions, after recording it."""
     space = space_of(stage)
     marked = replace(stage.marked, drifts={SCENARIO: Drift(space)})
     return recorded(stage.task, replace(stage.rollout, designation=marked), space, marked)
@@ -169,7 +172,7 @@ def recorded(task: str, rollout: Rollout, space: Space, marked: Designation) -> 
 
 
 def formula(name: str) -> Arena:
-    """Return a world of stress_worlds.py or of the later sets, or a harmless one."""
+    """Return a world of stress_worlds.py or the later sets, or a harmless one."""
     every: dict[str, World | Machine] = {**FORMULAS, **MACHINES, **HARMLESS}
     world = every[name]
     if isinstance(world, Machine):
@@ -178,7 +181,7 @@ def formula(name: str) -> Arena:
 
 
 def ours(one: Arena, reported: Sequence[Point], together: Together) -> list[Point]:
-    """Return the failing drifts of a stress run, confirmed or only expected, those nearest to nominal first."""
+    """Return the failing drifts of a stress run, confirmed or only expected, nearest first."""
     expected = [failure.point for failure in together.expected]
     unique = {tuple(point.values()): point for point in [*reported, *expected]}
     return sorted(unique.values(), key=lambda point: distance(one.space, point))
@@ -209,14 +212,14 @@ class Uniform:
         return drawn
 
     def tell(self, point: Sequence[float], cost: float) -> None:
-        """Learn nothing."""
+        """Do nothing: random points do not depend on costs."""
 
 
 class Process:
     """A peer in its own process and environment.
 
-    The peer writes a point and reads the cost of this point, each as a line of JSON. If the peer ends with an error,
-    the points that it wrote before the error still count.
+    The peer writes a point and reads its cost, each as a line of JSON. If it ends with an error, the points that it
+    wrote before still count.
     """
 
     def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:
@@ -229,7 +232,7 @@ class Process:
         self.asked = 0
 
     def ask(self) -> Sequence[float] | None:
-        """Return the next point, or None after the last one or when the time is up."""
+        """Return the next point; None after the last one, or when the time is up."""
         assert self.process.stdout is not None
         if not select([self.process.stdout], [], [], max(self.until - monotonic(), 0.0))[0]:
             print(f"{self.script} did not end in time", file=sys.stderr, flush=True)
@@ -270,7 +273,7 @@ def optimiser(method: str, size: int, seed: int, home: Path, seconds: float) -> 
 
 
 def placed(space: Space, numbers: Sequence[float]) -> Point:
-    """Convert coordinates from -1 to 1, where 0 is nominal, to a point of the space."""
+    """Convert coordinates from -1 to 1 (0 is nominal) to a point of the space."""
     found = {}
     for (name, extent), number in zip(space.extents.items(), numbers, strict=True):
         if isinstance(extent, Choice):
@@ -287,14 +290,14 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
 
 
 def _option(extent: Choice, number: float) -> float:
-    """Return the index of the option at a coordinate; the options have equal parts, the nominal one in the middle."""
+    """Return the option at a coordinate; all options have equal parts, with the nominal one in the middle."""
     others = [index for index in range(len(extent.options)) if index != extent.usual]
     others.insert(len(others) // 2, extent.usual)
     return float(others[min(int((number + 1.0) / 2.0 * len(others)), len(others) - 1)])
 
 
 def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 600.0) -> list[Point]:
-    """Run a peer for at most `seconds`; return its failing drifts, those nearest to nominal first."""
+    """Run a peer for at most `seconds`; return its failing drifts, nearest first."""
     evaluator = one.evaluator(seed, BUDGET)
     failing: dict[float, Point] = {}
     with optimiser(method, len(one.space.extents), seed, home, seconds) as peer:
@@ -312,7 +315,7 @@ def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 60
 
 
 def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
-    """Return the distance of the nearest point that fails on fresh seeds, or None if no point does."""
+    """Return the distance of the nearest point that fails on fresh seeds, or None."""
     judge = one.evaluator(10_000 + seed, 10**9)
     for k, point in enumerate(points[:OFFERS], 1):
         if judge.confirm(point, "judge", RISK / (k * (k + 1)), SIZES):
@@ -321,7 +324,7 @@ def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
 
 
 def at_least_as_near(own: float | None, other: float | None) -> bool:
-    """Return whether our distance is at most the other one; two methods that find nothing count as equal."""
+    """Return whether our distance is at most the other; if both methods found nothing, they count as equal."""
     if own is None or other is None:
         return other is None
     return own <= other * (1 + 1e-9)
@@ -330,7 +333,7 @@ def at_least_as_near(own: float | None, other: float | None) -> bool:
 def offered(
     one: Arena, seed: int, method: str, run: tuple[list[Point], Together] | None, home: Path, seconds: float
 ) -> list[Point]:
-    """Return the failing drifts of a method, those nearest to nominal first; `run` is that of `searched`, if any."""
+    """Return a method's failing drifts, nearest first; `run` is the result of `searched`, if there is one."""
     if run is None or method not in OWN:
         return peer_run(one, seed, method, home, seconds)
     return run[0] if method == "confirmed" else ours(one, *run)
@@ -339,7 +342,7 @@ def offered(
 def compare(
     one: Arena, methods: Sequence[str], seeds: Sequence[int], home: Path, seconds: float
 ) -> dict[str, list[float | None]]:
-    """Return the verified distance of each method at each seed."""
+    """Return each method's verified distance for each seed."""
     found: dict[str, list[float | None]] = {method: [] for method in methods}
     for seed in seeds:
         run = searched(one, seed) if set(OWN) & set(methods) else None
@@ -355,7 +358,7 @@ def _shown(value: float | None) -> str:
 
 
 def harmless_runs(runs: int, name: str = "harmless") -> str:
-    """Return the number of runs that report a failure although nothing in the space breaks the guarantee."""
+    """Return how many runs report a failure although nothing in the space breaks the guarantee."""
     one = formula(name)
     false = expected = 0
     for number in range(1, runs + 1):
@@ -368,7 +371,7 @@ def harmless_runs(runs: int, name: str = "harmless") -> str:
 
 
 def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
-    """Return a task's line: the median distance of each method, and how often a method of OWN is at least as near."""
+    """Return a task's line: each method's median distance, and how often a method of OWN is at least as near."""
     cells = []
     for method, values in found.items():
         known = [value for value in values if value is not None]

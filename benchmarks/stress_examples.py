@@ -1,4 +1,4 @@
-"""The examples that stress.py measures: a test of each, one of its drifts, and the nominal value.
+"""The examples measured by stress.py: for each, a test, one of its drifts, and the nominal value.
 
 The simulator of `tank_external` runs in a process of its own and needs an installed ROS 2 (`make setup-ros2`).
 """
@@ -13,16 +13,16 @@ EXAMPLES_FOLDER = Path(__file__).resolve().parent.parent / "examples"
 
 @dataclass(frozen=True)
 class Example:
-    """One direction of an example, from the nominal value to the drift that its test declares."""
+    """One direction of an example, from the nominal value to the drift declared by its test."""
 
     folder: str
     test: str  # pytest's id below the folder
     drift: str  # name of the drift
-    nominal: float  # the nominal value of the drift, or of its only entry
+    nominal: float  # nominal value of the drift, or of its only entry
 
     @property
     def place(self) -> Path:
-        """Return the folder that contains the test."""
+        """Return the folder of the test."""
         return EXAMPLES_FOLDER / self.folder
 
 

@@ -1,7 +1,7 @@
 """Simulated machines with drifts in physical units: the base of the sets of worlds, and the command that prints them.
 
-A machine is a mission with the ranges of its drifts, and with the success rate and the tolerance that a tester would
-write for it. An episode's noise depends only on its seed, as in a test that uses `tarl.rng`.
+A machine is a mission with the ranges of its drifts, and with the success rate and tolerance that a tester would
+choose. An episode's noise depends only on its seed, as in a test that uses `tarl.rng`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ GRAVITY = 9.81  # m/s²
 
 @dataclass(frozen=True)
 class Machine:
-    """A mission with the ranges of its drifts, and the test's markers."""
+    """A mission with the ranges of its drifts, and the test's marker arguments."""
 
     mission: Mission
     directions: Mapping[str, Span | Choice]
@@ -42,7 +42,7 @@ class Machine:
 
     @property
     def marked(self) -> Designation:
-        """Return the markers."""
+        """Return the marker arguments."""
         return Designation((), (), min_success=self.min_success, tolerance=self.tolerance)
 
     def run(self, seed: int, point: Point) -> tuple[bool, float]:
@@ -60,7 +60,7 @@ class Machine:
 
 
 def clipped(value: float, limit: float) -> float:
-    """Return the value limited to -limit … limit."""
+    """Return the value limited to ±`limit`."""
     return max(-limit, min(limit, value))
 
 
@@ -71,12 +71,12 @@ def rates(machine: Machine, point: Point, episodes: int) -> tuple[float, float]:
 
 
 def fails(machine: Machine, usual: float, found: tuple[float, float]) -> bool:
-    """Return whether rates are worse than the markers allow, where `usual` is the nominal reward."""
+    """Return whether rates are worse than the marker allows; `usual` is the nominal reward."""
     return found[0] < machine.min_success or found[1] < usual - machine.tolerance
 
 
 def _ends(extent: Span | Choice) -> list[float]:
-    """Return the ends of a range, or the indices of options, except the nominal one."""
+    """Return the ends of a range, or the indices of all options except the nominal one."""
     every = range(len(extent.options)) if isinstance(extent, Choice) else (extent.low, extent.high)
     return [float(end) for end in every if end != nominal(extent)]
 
@@ -89,7 +89,7 @@ def _drawn(extent: Span | Choice, draws: np.random.Generator) -> float:
 
 
 def told(name: str, machine: Machine, drifts: int = 400, episodes: int = 40) -> str:
-    """Return a line on a machine: its results at the nominal point, at the ends of each range and for random drifts."""
+    """Return a line on a machine: results at nominal, at the ends of each range, and for random drifts."""
     usual = rates(machine, machine.space.nominal, 1000)
     ends: dict[str, Any] = {}
     for direction, extent in machine.directions.items():
@@ -105,7 +105,7 @@ def told(name: str, machine: Machine, drifts: int = 400, episodes: int = 40) -> 
 
 
 def command(machines: Mapping[str, Machine]) -> None:
-    """Print for each machine how safe the nominal point is, and how many random drifts fail."""
+    """Print, for each machine, how safe nominal is, and how many random drifts fail."""
     parser = argparse.ArgumentParser(description=command.__doc__)
     parser.add_argument("machines", nargs="*", metavar="MACHINE", help="default: all")
     parser.add_argument("--drifts", type=int, default=400, help="random drifts of each machine")

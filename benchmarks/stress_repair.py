@@ -1,11 +1,11 @@
-"""Measure how far repairs at the boundary move the boundary, on the tasks of benchmarks/drift.
+"""Measure how far repairs at the boundary move it, on the tasks of benchmarks/drift.
 
     python benchmarks/stress_repair.py [TASK ...] [--results FILE]
 
-Each task has one direction, from its nominal value to its drift. The task is recorded, stressed with 246 episodes,
-repaired at the boundary and beyond, and stressed again, as `pytest --tarl-stress --tarl-repair` does with seed 1. A
-line for each task gives the interval of the boundary before and after the repair, as shares of the range, and the
-change. With `--results`, results are added to a JSON Lines file; tasks that the file contains are not run again.
+Each task has one direction, from its nominal value to its drift. It is recorded, stressed with 246 episodes, repaired
+at the boundary and beyond, and stressed again, as by `pytest --tarl-stress --tarl-repair` with seed 1. A line per task
+gives the boundary's interval before and after the repair, as shares of the range, and the change. With `--results`,
+results are stored in a JSON Lines file; tasks already in the file are not run again.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ BUDGET = round(SHARE * GRID * EPISODES)
 
 @dataclass(frozen=True)
 class Moved:
-    """One task: the boundary's interval before and after as shares of the range, what changed, and the report."""
+    """A task: the boundary's interval before and after, as shares of the range; the change; the report."""
 
     before: tuple[float | None, float | None]
     after: tuple[float | None, float | None]
@@ -48,13 +48,13 @@ class Moved:
 
     @property
     def grew(self) -> bool | None:
-        """Return whether the guarantee now fails farther from nominal, or nowhere; None if there is no repair."""
+        """Return whether the guarantee now fails farther from nominal, or nowhere; None without a repair."""
         before, after = self.before[1], self.after[1]
         return None if not self.change else after is None or (before is not None and after > before)
 
     @property
     def line(self) -> str:
-        """Return the table's columns other than the name of the task."""
+        """Return the table's columns except the task's name."""
         change = self.change or "no repair"
         return f"{shown(self.before)} | {shown(self.after) if self.change else ''} | {change}"
 
@@ -66,7 +66,7 @@ def shown(interval: tuple[float | None, float | None]) -> str:
 
 
 def job_of(stage: Stage) -> Job:
-    """Record a task, and return what stress and repair need."""
+    """Record a task; return what stress and repair need."""
     name = stage.drift
     rollout, nominal, far = sized(stage, name)
     marked = replace(stage.marked, drifts={name: Drift(span_of(nominal, far))})

@@ -1,9 +1,9 @@
-"""Worlds of four directions, defined by formulas, in which the nearest failing drift is known up to noise.
+"""Worlds of four directions, defined by formulas, in which the nearest failing drift is known except for noise.
 
-The reward has noise that depends only on the seed, as in a simulation, and a quarter as much noise that also depends on
-the drift. Each world takes a drift x in units of the ranges (0 is nominal) and random numbers. A world
-returns whether the episode passes, and the reward of the episode. The guarantee is that 95 % of the episodes
-pass and that at most TOLERANCE of the reward is lost.
+The reward's noise depends on the seed, as in a simulation, with a quarter as much noise that also depends on the drift.
+Each world takes a drift x in units of the ranges (0 is nominal) and random numbers, and returns whether the episode
+passes, and its reward. The guarantee is that 95 % of the episodes pass and that at most TOLERANCE of the reward is
+lost.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TOLERANCE = 0.5
 SHARED, NOISE = (
     0.2,
     0.05,
-)  # standard deviations of the two parts of the reward's noise: one depends on the seed, the other on seed and drift
+)  # standard deviations of the reward's noise: by seed alone, and by seed and drift
 NAMES = ("a", "b", "c", "d")
 _NONE = np.zeros(0, np.int32)
 
@@ -42,7 +42,7 @@ def product(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def corner(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Fail if the sum of three directions is large; a smaller sum does not change the reward."""
+    """Fail if the sum of three directions is large; up to that point, the reward does not change."""
     return bool(np.abs(x[:3]).sum() + draws.normal(0.0, 0.03) < 1.2), 1.0
 
 
@@ -60,13 +60,13 @@ def rare(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def island(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward only around one drift, which no single direction approaches."""
+    """Lose reward only around a single drift, which no single direction approaches."""
     away = np.linalg.norm(x - [0.35, -0.35, 0.3, 0.0])
     return True, 10.0 - TOLERANCE * 2.0 * float(np.exp(-((away / 0.3) ** 2))) + draws.normal(0.0, NOISE)
 
 
 def harmless(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose at most 62 % of the tolerated reward, and fail in 1 episode of 100 everywhere."""
+    """Lose at most 62 % of the tolerated reward, and fail in 1 of 100 episodes everywhere."""
     _, total = plane(0.3 * x, draws)
     return bool(draws.random() < 0.99), total
 
@@ -75,7 +75,7 @@ WORLDS: Mapping[str, World] = {one.__name__: one for one in (plane, product, cor
 
 
 def finished(plan: EpisodePlan, passed: bool, total: float) -> EpisodeRun:
-    """Return an episode of a world without a node: its reward and nothing else."""
+    """Return an episode of a world without a node, which has only a result and a reward."""
     trace = Trace((), _NONE, np.zeros(0), _NONE, _NONE, _NONE, np.array([total]), {})
     return EpisodeRun(plan, trace, passed)
 
@@ -101,6 +101,6 @@ class Formula:
 
 
 def space() -> Space:
-    """Return four directions, two of which have positive and negative values."""
+    """Return four directions; two of them have positive and negative values."""
     spans = (Span(-0.5, 0.5, 0.0), Span(-0.5, 0.5, 0.0), Span(0.0, 1.0, 0.0), Span(0.0, 1.0, 0.0))
     return Space(dict(zip(NAMES, spans, strict=True)), {})

@@ -3,8 +3,8 @@
 They were written before the search that they judge was changed, by an author who had read the search before. The form
 is that of stress_worlds_9.py. `bottler` has three directions and heavy-tailed noise; in `hoist`, two directions that
 are harmless alone multiply; in `sprayer`, five directions matter a little each and the reward is noisy; in `relay`,
-failures come in bursts; `glasshouse` has five directions, each of them harmless alone; `welder` fails in two separate
-regions, and one of its directions is a choice.
+failures come in bursts; `glasshouse` has five directions, each harmless alone; `welder` fails in two separate regions,
+and one of its directions is a choice.
 
     python benchmarks/stress_worlds_10.py [MACHINE ...]      # how safe nominal is, and how many random drifts fail
 """
@@ -21,11 +21,11 @@ from pytest_tarl.spaces import Choice, Span
 
 
 def bottler(rng: np.random.Generator, syrup: float, head: float, lag: float) -> tuple[bool, float]:
-    """Fill 24 bottles of 500 ml through a valve that a flow meter closes.
+    """Fill 24 bottles of 500 ml through a valve that is closed by a flow meter.
 
-    `syrup` is the temperature of the syrup in °C, `head` the height of the tank in m, and `lag` the lag of the valve in
-    s. The flow meter is blind below 60 ml/s. Now and then a bubble passes, so the errors have heavy tails. The tray
-    passes if at most two bottles are more than 20 ml off. The reward falls with the error and with the time.
+    Drifts: `syrup`, temperature of the syrup (°C); `head`, height of the tank (m); `lag` of the valve (s). The flow
+    meter is blind below 60 ml/s. Sometimes a bubble passes, so the errors have heavy tails. The tray passes if at most
+    two bottles are more than 20 ml off. The reward falls with the error and the time.
     """
     bubbles, trims = rng.standard_t(3.0, 24), float(rng.normal(0.0, 0.01))
     thick = exp(0.035 * (20.0 - syrup))
@@ -42,9 +42,9 @@ def hoist(
 ) -> tuple[bool, float]:
     """Stop a goods lift at ten floors, with a pulse counter on the motor and a rope that stretches.
 
-    `cars` is the load in t, `slip` the slip of the rope on the sheave in percent per t, `stretch` the stretch of the
-    rope in mm per t, and `heat` the temperature of the brake in °C. The day passes if no step at a door is higher than
-    30 mm. The reward falls with the mean step.
+    Drifts: `cars`, load (t); `slip` of the rope on the sheave (percent per t); `stretch` of the rope (mm per t);
+    `heat`, temperature of the brake (°C). The day passes if no step at a door is higher than 30 mm. The reward falls
+    with the mean step.
     """
     floors = rng.integers(1, 9, 10)
     loads = cars * np.clip(rng.normal(0.8, 0.2, 10), 0.0, 1.2)
@@ -60,9 +60,9 @@ def sprayer(
 ) -> tuple[bool, float]:
     """Spray a strip of a field beside a stream.
 
-    `wind` is across the strip in m/s, `boom` the height in m, `pace` in m/s, `droplets` their diameter in µm, and
-    `dryness` of the air from 0 to 1. The strip passes if less than 9 % of the spray drifts off. How much the plants
-    take varies much, and the reward is that.
+    Drifts: `wind` across the strip (m/s); `boom`, its height (m); `pace` (m/s); `droplets`, their diameter (µm);
+    `dryness` of the air (0 to 1). The strip passes if less than 9 % of the spray drifts off. The reward is how much the
+    plants take up, which varies much.
     """
     gust, eddy = float(rng.lognormal(0.0, 0.18)), float(rng.gamma(9.0, 1.0 / 9.0))
     taken = 12.0 * float(rng.lognormal(0.0, 0.35))
@@ -77,11 +77,11 @@ def sprayer(
 def relay(
     rng: np.random.Generator, range_: float, crowd: float, rain: float, antenna: float
 ) -> tuple[bool, float]:
-    """Pass messages of a rover to its base for 200 s, over a radio that fades in bursts.
+    """Pass a rover's messages to its base for 200 s, over a radio that fades in bursts.
 
-    `range_` is the distance in m, `crowd` the number of other stations, `rain` in mm/h, and `antenna` its misalignment
-    in degrees. The rover stops after 6 s without a message; the mission passes if it stops at most once. The reward
-    falls with the messages lost.
+    Drifts: `range_`, distance (m); `crowd`, number of other stations; `rain` (mm/h); `antenna`, misalignment (degrees).
+    The rover stops after 6 s without a message. The mission passes if it stops at most once. The reward falls with the
+    lost messages.
     """
     rolls, turns = rng.random(200).tolist(), rng.random(200).tolist()
     strength = 52.0 - 20.0 * np.log10(range_ / 50.0) - 0.0016 * rain * range_ / 10.0 - 0.004 * antenna**2
@@ -103,9 +103,9 @@ def glasshouse(
 ) -> tuple[bool, float]:
     """Keep seedlings alive for a day and a night with vents and a heater.
 
-    `outside` is the mean temperature in °C, `sun` its peak in W/m², `stuck` the share of the vents that do not open,
-    `draught` the wind in m/s through the gaps, and `fouled` the share of the heater that gives no heat. The seedlings
-    die below 5 °C or above 40 °C. The reward falls with the distance from 18 to 26 °C.
+    Drifts: `outside`, mean temperature (°C); `sun`, its peak (W/m²); `stuck`, share of the vents that do not open;
+    `draught`, wind through the gaps (m/s); `fouled`, share of the heater that gives no heat. The seedlings die below 5
+    °C or above 40 °C. The reward falls with the distance from the range of 18 to 26 °C.
     """
     clouds, front = rng.normal(1.0, 0.1, 24).tolist(), float(rng.normal(0.0, 1.2))
     hot, wrong, lowest, highest = 20.0, 0.0, 20.0, 20.0
@@ -132,15 +132,15 @@ def welder(
 ) -> tuple[bool, float]:
     """Weld a seam of 40 cm in sixteen pieces.
 
-    `gas` is mixed, pure or cheap; `current` is in A, `gap` between the sheets in mm, `sheet` their thickness in mm, and
-    `aside` the error of the seam tracker in mm. Too much heat burns a hole, too little does not melt the root. The seam
+    Drifts: `gas` (mixed, pure or cheap); `current` (A); `gap` between the sheets (mm); `sheet`, their thickness (mm);
+    `aside`, error of the seam tracker (mm). Too much heat burns a hole, too little does not melt the root. The seam
     passes without holes and with at most two cold pieces. The reward falls with the unevenness.
     """
     heat, scatter = GASES[gas]
     arcs = heat * current * rng.normal(1.0, scatter, 16)
     gaps = np.maximum(0.0, gap + rng.normal(0.0, 0.06, 16))
     offs = np.abs(aside + rng.normal(0.0, 0.12, 16))
-    # the energy for each mm of thickness, less where the arc misses the root
+    # the energy per mm of thickness; less where the arc misses the root
     density = arcs / (62.0 * sheet) * np.exp(-((offs / 1.6) ** 2))
     burnt = bool((density * (1.0 + 0.55 * gaps) > 2.05).any())
     cold = int((density * (1.0 - 0.25 * gaps) < 0.62).sum())

@@ -3,7 +3,7 @@
 They were written before any search ran on them, by an author who had not read the search. The form is that of
 stress_worlds_10.py. `parafoil` fails in a corner of two directions; `loom` in a narrow valley around a resonance;
 `brewery` beyond a plane to which five directions contribute; `tram` beyond a curved boundary; `sniffer` by chance, with
-a share of failures that grows slowly; `drillstring` has two failing regions, and one of its directions is a choice.
+a slowly growing share of failures; `drillstring` has two failing regions, and one of its directions is a choice.
 
     python benchmarks/stress_worlds_11.py [MACHINE ...]      # how safe nominal is, and how many random drifts fail
 """
@@ -22,10 +22,10 @@ from pytest_tarl.spaces import Choice, Span
 def parafoil(
     rng: np.random.Generator, wind: float, wet: float, load: float, drop: float
 ) -> tuple[bool, float]:
-    """Land a parafoil with a parcel within 25 m of a cross, from a release upwind.
+    """Land a parafoil with a parcel within 25 m of a cross, after a release upwind.
 
-    `wind` is in m/s, `wet` the share of water that the canopy holds, `load` the parcel in kg, and `drop` the height of
-    the release in m. A wet canopy loses glide, which matters only against wind. The reward falls with the distance.
+    Drifts: `wind` (m/s); `wet`, share of water in the canopy; `load`, the parcel (kg); `drop`, height of the release
+    (m). A wet canopy loses glide, which matters only against the wind. The reward falls with the distance.
     """
     gusts = rng.normal(0.0, 0.6, 12)
     aim = rng.normal(0.0, 4.0, 2)
@@ -37,7 +37,7 @@ def parafoil(
         span = left / 4.0 if left > 40.0 else left
         seconds = span / sink
         against = max(0.0, wind + gust)
-        # the steering asks for the cross, and can fly with the wind or against it
+        # the parafoil steers for the cross, and can fly with or against the wind
         wish = -east / max(seconds, 1e-6)
         east += seconds * clipped(wish, max(0.0, air - against if wish < 0.0 else air + against))
         east += seconds * 0.22 * against * wet
@@ -51,9 +51,9 @@ def loom(
 ) -> tuple[bool, float]:
     """Weave 300 picks on a loom whose warp resonates with its shed.
 
-    `picks` is the speed in picks per minute, `tension` of the warp in cN per end, `humidity` of the hall in percent,
-    and `reed` the wear of the reed from 0 to 1. The cloth passes with at most two broken ends. The reward is the
-    output, less a share for each break.
+    Drifts: `picks`, speed (picks per minute); `tension` of the warp (cN per end); `humidity` of the hall (percent);
+    `reed`, its wear (0 to 1). The cloth passes with at most two broken ends. The reward is the output, minus a share
+    for each break.
     """
     ends = rng.gamma(20.0, 1.0 / 20.0, 40)
     luck = rng.random(40)
@@ -71,9 +71,10 @@ def brewery(
 ) -> tuple[bool, float]:
     """Ferment a tank of lager for ten days with a cooling jacket.
 
-    `cellar` is the temperature of the room in °C, `yeast` the share of living cells, `gravity` of the wort in °P,
-    `jacket` the share of the cooling that is left, and `delay` of the thermostat in h. The batch passes if the tank
-    stays below 15 °C and at least 72 % of the sugar is gone. The reward falls with both.
+    Drifts: `cellar`, temperature of the room (°C); `yeast`, share of living cells; `gravity` of the wort (°P);
+    `jacket`, share of the cooling that is left; `delay` of the thermostat (h). The batch passes if the tank stays below
+    15 °C and at least 72 % of the sugar is gone. The reward rises with the share of sugar that is gone, and falls with
+    temperatures above 11.5 °C.
     """
     vigour, weather = float(rng.normal(1.0, 0.05)), rng.normal(0.0, 0.8, 10)
     sugar, cells, hot, highest = gravity, 1.0 * yeast, 10.0, 10.0
@@ -95,11 +96,11 @@ def brewery(
 def tram(
     rng: np.random.Generator, leaves: float, slope: float, crowd: float, sanding: float
 ) -> tuple[bool, float]:
-    """Stop a tram at six platforms, with a brake that starts at a point for dry rails.
+    """Stop a tram at six platforms, with a braking point chosen for dry rails.
 
-    `leaves` is how slippery the rails are, from 0 to 1; `slope` is the slope of the line in percent, positive downhill;
-    `crowd` is the load in t; `sanding` is the delay in s until sand lies on the rails. A stop passes within 4 m of the
-    sign; the run passes with at most one bad stop. The reward falls with the mean error.
+    Drifts: `leaves`, how slippery the rails are (0 to 1); `slope` of the line (percent; positive is downhill); `crowd`,
+    load (t); `sanding`, delay until sand lies on the rails (s). A stop passes within 4 m of the sign; the run passes
+    with at most one bad stop. The reward falls with the mean error.
     """
     speeds = rng.normal(11.0, 0.25, 6)
     patches = np.clip(rng.normal(1.0, 0.25, 6), 0.0, 1.8)
@@ -120,9 +121,9 @@ def sniffer(
 ) -> tuple[bool, float]:
     """Find ten gas leaks along a street with a methane sensor on a car.
 
-    `breeze` is across the street in m/s, `leak` the median size in l/min, `traffic` the vehicles per minute in front,
-    `age` of the sensor in years, and `pace` of the car in m/s. The drive passes if at least eight leaks are found. The
-    reward is the number of leaks, less false alarms.
+    Drifts: `breeze` across the street (m/s); `leak`, median size (l/min); `traffic`, vehicles ahead per minute; `age`
+    of the sensor (years); `pace` of the car (m/s). The drive passes if at least eight leaks are found. The reward is
+    the number of leaks, minus false alarms.
     """
     sizes = leak * rng.lognormal(0.0, 0.55, 10)
     aside = rng.uniform(2.0, 6.0, 10)
@@ -144,9 +145,9 @@ def drillstring(
 ) -> tuple[bool, float]:
     """Drill ten metres with a string that sticks and slips when it turns slowly, and whirls when it turns fast.
 
-    `rock` is sandstone, limestone or chert; `weight` on the bit is in kN, `turns` in 1/min, `mud` the flow in l/s, and
-    `depth` of the hole in m. A metre fails if the bit sticks, whirls, or is buried in cuttings; the run passes with at
-    most one such metre. The reward is the speed of drilling.
+    Drifts: `rock` (sandstone, limestone or chert); `weight` on the bit (kN); `turns` (1/min); `mud`, flow (l/s);
+    `depth` of the hole (m). A metre fails if the bit sticks, whirls, or is buried in cuttings. The run passes with at
+    most one such metre. The reward is the drilling speed.
     """
     hardness, scatter = ROCKS[rock]
     hard = hardness * rng.lognormal(0.0, scatter, 10)

@@ -1,8 +1,8 @@
 """Ten more machines with drifts in physical units, four directions each, and three in which nothing breaks.
 
 They were written before any search ran on them, by an author who had not read the search. The form is that of
-stress_worlds_11.py. `maglev`, `caster` and `stirred_tank` lose their stability; `chromatograph` and `laser_link` fail
-on both sides of a valley; `tape_library` fails by chance, as its queue grows; `beacons`, `irrigator`, `eddy_sorter` and
+stress_worlds_11.py. `maglev`, `caster` and `stirred_tank` become unstable; `chromatograph` and `laser_link` fail on
+both sides of a valley; `tape_library` fails by chance, as its queue grows; `beacons`, `irrigator`, `eddy_sorter` and
 `footbridge` fail beyond curved boundaries.
 
     python benchmarks/stress_worlds_12.py [MACHINE ...]      # how safe nominal is, and how many random drifts fail
@@ -22,11 +22,11 @@ from pytest_tarl.spaces import Choice, Span
 def maglev(
     rng: np.random.Generator, delay: float, load: float, warm: float, joint: float
 ) -> tuple[bool, float]:
-    """Carry a tray on a magnet for two seconds, over joints of the rail.
+    """Carry a tray on a magnet for two seconds, over the joints of a rail.
 
-    `delay` of the gap sensor is in ms, `load` on the tray in kg, `warm` the temperature of the coil in °C, and `joint`
-    the height of the rail's joints in mm. The tray passes if its gap stays between 0.3 and 7.7 mm. The reward falls
-    with the deviation of the gap.
+    Drifts: `delay` of the gap sensor (ms); `load` on the tray (kg); `warm`, temperature of the coil (°C); `joint`,
+    height of the rail's joints (mm). The tray passes if its gap stays between 0.3 and 7.7 mm. The reward falls with the
+    deviation of the gap.
     """
     bumps = rng.normal(0.0, 1.0, 8)
     step, gap, speed, moved = 0.002, 4.0, 0.0, 0.0
@@ -53,8 +53,8 @@ def eddy_sorter(
 ) -> tuple[bool, float]:
     """Throw 60 pieces of aluminium over a splitter, and let 60 pieces of plastic fall before it.
 
-    `belt` is its speed in m/s, `wet` the share of pieces that stick to it, `size` of the pieces in mm, and `splitter`
-    its distance in mm. The batch passes with 85 % of both on their side. The reward is the purity.
+    Drifts: `belt`, speed (m/s); `wet`, share of pieces that stick to the belt; `size` of the pieces (mm); `splitter`,
+    distance (mm). The batch passes if 85 % of each material land on their side. The reward is the purity.
     """
     sizes = size * rng.lognormal(0.0, 0.22, 60)
     luck = rng.normal(0.0, 1.0, (2, 60))
@@ -72,8 +72,8 @@ def chromatograph(
 ) -> tuple[bool, float]:
     """Separate six pairs of substances on a column.
 
-    `flow` is in ml/min, `oven` in °C, `age` of the column in hundreds of runs, and `acid` the pH of the solvent. A
-    pair counts if its resolution is above 1.5; the run passes with five pairs in 30 minutes. The reward falls with the
+    Drifts: `flow` (ml/min); `oven` (°C); `age` of the column (hundreds of runs); `acid`, pH of the solvent. A pair
+    counts if its resolution is above 1.5. The run passes with five pairs in 30 minutes. The reward falls with the
     duration.
     """
     near = 1.14 + 0.01 * rng.normal(0.0, 1.0, 6)
@@ -93,11 +93,11 @@ def chromatograph(
 def beacons(
     rng: np.random.Generator, water: float, salt: float, swell: float, echo: float
 ) -> tuple[bool, float]:
-    """Fix the place of a diver 20 times from three acoustic beacons, with the speed of sound of a mild sea.
+    """Locate a diver 20 times from three acoustic beacons, with the speed of sound of a mild sea.
 
-    `water` is the temperature in °C, `salt` in g/kg, `swell` moves the beacons in m, and `echo` is the share of pings
-    that are heard over the ground. A fix passes within 1.5 m; the dive passes with 17 good fixes. The reward falls with
-    the median error.
+    Drifts: `water`, temperature (°C); `salt` (g/kg); `swell`, movement of the beacons (m); `echo`, share of pings heard
+    via the ground. A fix passes within 1.5 m; the dive passes with 17 good fixes. The reward falls with the median
+    error.
     """
     at = rng.uniform(-25.0, 25.0, (20, 2))
     noise = rng.normal(0.0, 1.0, (20, 3))
@@ -108,7 +108,7 @@ def beacons(
     scale = 1500.0 / sound
     ways = np.linalg.norm(at[:, None, :] - posts[None], axis=2)
     ranges = scale * (ways + heard * detour) + (0.12 + 0.6 * swell) * noise
-    # the squared ranges, less those of the third beacon, are linear in the place
+    # the squared ranges minus that of the third beacon are linear in the position
     matrix = 2.0 * (posts[2] - posts[:2])
     right = ranges[:, :2] ** 2 - ranges[:, 2:] ** 2 - (posts[:2] ** 2).sum(1) + (posts[2] ** 2).sum()
     found = np.linalg.solve(matrix, right.T).T
@@ -119,11 +119,11 @@ def beacons(
 def footbridge(
     rng: np.random.Generator, crowd: float, stiffness: float, damper: float, frost: float
 ) -> tuple[bool, float]:
-    """Carry walkers over a footbridge whose tuned damper was set for a mild day.
+    """Carry walkers over a footbridge whose tuned damper was adjusted on a mild day.
 
-    `crowd` is the number of walkers, `stiffness` of the deck relative to its design, `damper` the share of its damping
-    that is left, and `frost` in °C moves its frequency. Walkers fall into step as the deck moves. The day passes if the
-    deck moves with less than 0.9 m/s². The reward falls with the motion.
+    Drifts: `crowd`, number of walkers; `stiffness` of the deck relative to its design; `damper`, share of its damping
+    that is left; `frost` (°C), which moves its frequency. Walkers fall into step when the deck moves. The day passes if
+    the deck's acceleration stays below 0.9 m/s². The reward falls with the motion.
     """
     pace = rng.normal(1.86, 0.02)
     scatter = rng.lognormal(0.0, 0.06)
@@ -146,9 +146,9 @@ def irrigator(
 ) -> tuple[bool, float]:
     """Water eight rows through a pipe with a pump at its lower end.
 
-    `pump` is the share of its pressure, `clogged` of the filter, `slope` of the field in m per row, and `leak` an
-    opening after the third row relative to a dripper. A row passes with 70 to 135 % of its water; the field passes with
-    seven rows. The reward falls with the spread.
+    Drifts: `pump`, share of its pressure; `clogged`, share of the filter; `slope` of the field (m per row); `leak`, an
+    opening after the third row, relative to a dripper. A row passes with 70 to 135 % of its water; the field passes
+    with seven rows. The reward falls with the spread.
     """
     drippers = rng.lognormal(0.0, 0.04, 8)
     heads = 26.0 * pump * (1.0 - 0.85 * clogged**2)
@@ -163,7 +163,7 @@ def irrigator(
     return good >= 7, 10.0 - 12.0 * float(np.std(flows)) - 6.0 * abs(float(flows.mean()) - 1.0)
 
 
-DRIVES = {"fast": (62.0, 0.06), "refurbished": (75.0, 0.16), "old": (96.0, 0.3)}  # s a job, scatter
+DRIVES = {"fast": (62.0, 0.06), "refurbished": (75.0, 0.16), "old": (96.0, 0.3)}  # seconds per job, scatter
 
 
 def tape_library(
@@ -171,9 +171,9 @@ def tape_library(
 ) -> tuple[bool, float]:
     """Serve 60 requests of a tape library with one robot.
 
-    The `drive` is fast, refurbished or old; `rush` the requests per hour, `dropped` the share of grips that must be
-    repeated, and `far` the share of tapes at the far end. The shift passes if 52 requests wait less than 400 s. The
-    reward falls with the mean wait.
+    Drifts: `drive` (fast, refurbished or old); `rush`, requests per hour; `dropped`, share of grips that must be
+    repeated; `far`, share of tapes at the far end. The shift passes if 52 requests wait less than 400 s. The reward
+    falls with the mean wait.
     """
     pauses, luck, places = rng.exponential(1.0, 60), rng.random((3, 60)), rng.random(60)
     usual, scatter = DRIVES[drive]
@@ -193,8 +193,8 @@ def laser_link(
 ) -> tuple[bool, float]:
     """Send 50 frames over a laser link between two masts.
 
-    `fog` is in dB per km, `shaking` of the masts in mrad, `beam` its width in mrad, and `reach` the distance in km. A
-    narrow beam misses, and a wide one is too faint. The link passes with 45 frames. The reward is the mean margin.
+    Drifts: `fog` (dB per km); `shaking` of the masts (mrad); `beam`, width (mrad); `reach`, distance (km). A narrow
+    beam misses, and a wide one is too faint. The link passes with 45 frames. The reward is the mean margin.
     """
     off = shaking * np.abs(rng.normal(0.0, 1.0, (50, 2))).max(1)
     air = rng.normal(0.0, 0.8 + 0.4 * reach, 50)
@@ -206,11 +206,11 @@ def laser_link(
 def stirred_tank(
     rng: np.random.Generator, feed: float, coolant: float, fouling: float, activity: float
 ) -> tuple[bool, float]:
-    """Run an exothermic reaction in a cooled tank for 200 minutes; too hot, it runs away, and too cold, it dies out.
+    """Run an exothermic reaction in a cooled tank for 200 minutes; too hot, it runs away; too cold, it dies out.
 
-    `feed` is in mol/l, `coolant` in °C, `fouling` the share of the cooling surface that is lost, and `activity` of the
-    catalyst relative to a fresh one. The run passes below 118 °C with 55 % converted at the end. The reward is the mean
-    conversion.
+    Drifts: `feed` (mol/l); `coolant` (°C); `fouling`, lost share of the cooling surface; `activity` of the catalyst
+    relative to a fresh one. The run passes if it stays below 118 °C and has converted 55 % at the end. The reward is
+    the mean conversion.
     """
     ripple = rng.normal(0.0, 0.04, 20)
     own = float(rng.normal(1.0, 0.03))
@@ -234,8 +234,8 @@ def caster(
 ) -> tuple[bool, float]:
     """Push a cart whose casters shimmy when they roll fast on a short trail.
 
-    `speed` is in m/s, `trail` of the casters in mm, `load` on each in kg, and `wear` the share of the swivel's friction
-    that is gone. The run passes if no caster swings by more than 0.5 rad. The reward falls with the mean swing.
+    Drifts: `speed` (m/s); `trail` of the casters (mm); `load` on each (kg); `wear`, share of the swivel's friction that
+    is gone. The run passes if no caster swings by more than 0.5 rad. The reward falls with the mean swing.
     """
     kick = float(rng.normal(0.0, 1.0)) * 0.03
     bumps = rng.normal(0.0, 1.0, 40)
@@ -244,7 +244,7 @@ def caster(
     inertia = 0.006 + 0.9 * arm**2
     for tick in range(400):
         slip = side / 0.035
-        # the tyre's side force follows its slip after a way of rolling
+        # the tyre's side force follows its slip after it has rolled some way
         side += step * (speed * (angle - slip) + arm * rate)
         force = clipped(0.12 * grip * slip, 0.6 * grip)
         rub = (1.0 - 0.9 * wear) * 0.06 * rate
@@ -260,9 +260,9 @@ def caster(
 def quiet_kettle(
     rng: np.random.Generator, room: float, volts: float, scale: float, lid: float
 ) -> tuple[bool, float]:
-    """Heat water to 90 °C within nine minutes, with a heater that has enough left.
+    """Heat water to 90 °C within nine minutes, with a heater that has enough power in reserve.
 
-    `room` is in °C, `volts` of the mains, `scale` on the heater in mm, and `lid` how far it is open. Within the ranges,
+    Drifts: `room` (°C); `volts` of the mains; `scale` on the heater (mm); `lid`, how far it is open. Within the ranges,
     nothing breaks.
     """
     litres = float(rng.normal(1.2, 0.03))
@@ -275,9 +275,9 @@ def quiet_kettle(
 def quiet_counter(
     rng: np.random.Generator, light: float, pace: float, dust: float, tilt: float
 ) -> tuple[bool, float]:
-    """Count 200 bottles with two light barriers, of which either suffices.
+    """Count 200 bottles with two light barriers, either of which is enough.
 
-    `light` of the hall is in lx, `pace` in bottles per second, `dust` on the lenses from 0 to 1, and `tilt` in degrees.
+    Drifts: `light` of the hall (lx); `pace` (bottles per second); `dust` on the lenses (0 to 1); `tilt` (degrees).
     Within the ranges, nothing breaks.
     """
     missed = 0.004 + 0.0000012 * light + 0.01 * dust + 0.001 * pace + 0.0004 * abs(tilt)
@@ -288,10 +288,10 @@ def quiet_counter(
 def quiet_pendulum(
     rng: np.random.Generator, wire: float, air: float, push: float, drag: float
 ) -> tuple[bool, float]:
-    """Keep a clock's pendulum going, whose escapement makes up for the losses.
+    """Keep a clock's pendulum going; the escapement compensates for its losses.
 
-    `wire` is its length in cm, `air` the temperature in °C, `push` of the escapement relative to its design, and `drag`
-    of the air likewise. Within the ranges, nothing breaks.
+    Drifts: `wire`, its length (cm); `air`, temperature (°C); `push` of the escapement and `drag` of the air, both
+    relative to the design. Within the ranges, nothing breaks.
     """
     swing = 0.05 * sqrt(push / drag) * float(rng.lognormal(0.0, 0.02))
     period = (

@@ -1,11 +1,11 @@
 """Ten more machines with drifts in physical units, and two in which nothing breaks.
 
-Each machine has a shape of failure that the sets before do not have or have only once: `spray_booth` fails by a product
-of four factors, `twin_compressors` on a narrow ridge across two directions, `tide_lock` with the period of the tide,
-`glue_press` on another side for each option, `heliostat` by delay times gain, `cold_store` if two of four thresholds
-are exceeded, `ground_ray` at distances between others that hold, `seed_belt` by rare events that no reward shows,
-`peak_shaver` by losses with heavy tails, and `six_axes` by six offsets that matter a little each. The form is that of
-stress_worlds_12.py. The file was complete before any search ran on it.
+Each machine has a shape of failure that the earlier sets do not have, or have only once: `spray_booth` fails by a
+product of four factors, `twin_compressors` on a narrow ridge across two directions, `tide_lock` with the period of the
+tide, `glue_press` on another side for each option, `heliostat` by delay times gain, `cold_store` if two of four
+thresholds are exceeded, `ground_ray` at distances between others that hold, `seed_belt` by rare events that do not show
+in the reward, `peak_shaver` by losses with heavy tails, and `six_axes` by six offsets that matter a little each. The
+form is that of stress_worlds_12.py. The file was complete before any search ran on it.
 
     python benchmarks/stress_worlds_13.py [MACHINE ...]      # how safe nominal is, and how many random drifts fail
 """
@@ -26,9 +26,9 @@ def spray_booth(
 ) -> tuple[bool, float]:
     """Paint 40 panels with a film of 60 µm.
 
-    `flow` of the gun is in ml/min, `solids` the share of the paint that stays, `line` the speed in m/min, and `spread`
-    the width of the fan in cm. The batch passes if at most three panels have less than 42 or more than 85 µm. The
-    reward falls with the deviation of the film.
+    Drifts: `flow` of the gun (ml/min); `solids`, share of the paint that stays; `line`, speed (m/min); `spread`, width
+    of the fan (cm). The batch passes if at most three panels have less than 42 or more than 85 µm. The reward falls
+    with the deviation of the film.
     """
     film = 60.0 * (flow / 300.0) * (solids / 0.45) * (4.0 / line) * (30.0 / spread)
     panels = film * rng.lognormal(0.0, 0.06, 40) * float(rng.lognormal(0.0, 0.03))
@@ -41,9 +41,8 @@ def twin_compressors(
 ) -> tuple[bool, float]:
     """Run two compressors on one frame, which shakes if their speeds are nearly as three to two.
 
-    `lead` and `lag` are the speeds in rpm, `mount` the damping of the frame relative to new rubber, and `pressure` of
-    the network in bar. The hour passes if the frame never shakes by more than 4 mm/s. The reward is the air that is
-    delivered.
+    Drifts: `lead` and `lag`, speeds (rpm); `mount`, damping of the frame relative to new rubber; `pressure` of the
+    network (bar). The hour passes if the frame never shakes by more than 4 mm/s. The reward is the delivered air.
     """
     drift = rng.normal(0.0, 6.0, 30)
     beat = np.abs(2.0 * (lead + drift) - 3.0 * lag) / 60.0
@@ -57,9 +56,9 @@ def tide_lock(
 ) -> tuple[bool, float]:
     """Bring a barge over the sill of a lock; the tide has a period of 12.4 hours.
 
-    `hour` is the time since high water, `draught` of the barge in m, `silt` on the sill in m, and `wind` from the sea
-    in m/s (negative: from the land), which raises the water. The passage passes with 0.4 m under the keel. The reward
-    falls with the time that the barge needs.
+    Drifts: `hour` since high water; `draught` of the barge (m); `silt` on the sill (m); `wind` from the sea (m/s;
+    negative: from the land), which raises the water. The passage passes with 0.4 m under the keel. The reward falls
+    with the time that the barge needs.
     """
     surge = 0.02 * wind + float(rng.normal(0.0, 0.06))
     level = 4.6 + surge + 1.1 * cos(2.0 * pi * hour / 12.4) + 0.25 * cos(4.0 * pi * hour / 12.4)
@@ -72,10 +71,10 @@ def tide_lock(
 def glue_press(
     rng: np.random.Generator, glue: str, warm: float, moist: float, seconds: float
 ) -> tuple[bool, float]:
-    """Press 50 boards with one of four glues, each of which has its own window.
+    """Press 50 boards with one of four glues, each of which has its own process window.
 
-    `warm` of the hall is in °C, `moist` the water in the wood in per cent, and `seconds` the time under the press. The
-    batch passes if at most five boards open. The reward falls with the boards that open.
+    Drifts: `glue`; `warm`, temperature of the hall (°C); `moist`, water in the wood (percent); `seconds` in the press.
+    The batch passes if at most five boards open. The reward falls with the number of boards that open.
     """
     best, window, thirst, need = {
         "white": (22.0, 11.0, 0.5, 55.0),
@@ -93,10 +92,10 @@ def glue_press(
 def heliostat(
     rng: np.random.Generator, delay: float, gain: float, slack: float, gust: float
 ) -> tuple[bool, float]:
-    """Hold the sun's image on a tower for three minutes, by a loop over a camera.
+    """Hold the sun's image on a tower for three minutes, with a control loop on a camera.
 
-    `delay` of the camera is in s, `gain` of the motors relative to their design, `slack` of the gear in mrad, and
-    `gust` the wind's push in mrad per step. The image passes if it is within 4 mrad in 95 % of the last two minutes.
+    Drifts: `delay` of the camera (s); `gain` of the motors relative to their design; `slack` of the gear (mrad);
+    `gust`, push of the wind (mrad per step). The image passes if it is within 4 mrad in 95 % of the last two minutes.
     The reward falls with its mean deviation.
     """
     pushes = rng.normal(0.0, gust, 360)
@@ -119,10 +118,10 @@ def heliostat(
 def cold_store(
     rng: np.random.Generator, outside: float, doors: float, frost: float, voltage: float
 ) -> tuple[bool, float]:
-    """Keep a cold store below −18 °C through a day; it holds unless two of its four reserves are exhausted.
+    """Keep a cold store below −18 °C for a day; it holds unless two of its four reserves are exhausted.
 
-    `outside` is in °C, `doors` the openings per hour, `frost` on the evaporator in mm, and `voltage` of the mains in V.
-    The reward falls with the energy, which hardly shows how much reserve is left.
+    Drifts: `outside` (°C); `doors`, openings per hour; `frost` on the evaporator (mm); `voltage` of the mains (V). The
+    reward falls with the energy used, which hardly shows how much reserve is left.
     """
     day = rng.normal(0.0, 1.0, 4)
     over = (
@@ -138,10 +137,10 @@ def cold_store(
 def ground_ray(
     rng: np.random.Generator, metres: float, mast: float, wet: float, noise: float
 ) -> tuple[bool, float]:
-    """Send 100 packets from a drone at 30 m to a mast; the ray from the ground cancels the direct one at times.
+    """Send 100 packets from a drone at 30 m to a mast; at times, the ray from the ground cancels the direct one.
 
-    `metres` is the distance, `mast` the height of the aerial in m, `wet` how well the ground reflects, and `noise` in
-    dB above the usual one. The flight passes with 90 packets. The reward is the mean of the signal in dB, cut off.
+    Drifts: `metres`, distance; `mast`, height of the aerial (m); `wet`, how well the ground reflects; `noise` above the
+    usual level (dB). The flight passes with 90 packets. The reward is the mean of the signal in dB, cut off.
     """
     direct, bounced = hypot(metres, 30.0 - mast), hypot(metres, 30.0 + mast)
     phases = 2.0 * pi * (bounced - direct) / 0.75 + rng.normal(0.0, 0.25, 100)
@@ -153,10 +152,10 @@ def ground_ray(
 def seed_belt(
     rng: np.random.Generator, dust: float, static: float, slope: float, age: float
 ) -> tuple[bool, float]:
-    """Sow 2,000 seeds; a lump that blocks the tube spoils the bed, and is rare.
+    """Sow 2,000 seeds; a rare lump that blocks the tube spoils the bed.
 
-    `dust` is in mg/m³, `static` the charge of the belt in kV, `slope` of the field in degrees, and `age` of the belt in
-    years. The bed passes without a lump. The reward is about the spacing, to which lumps add nothing.
+    Drifts: `dust` (mg/m³); `static`, charge of the belt (kV); `slope` of the field (degrees); `age` of the belt
+    (years). The bed passes without a lump. The reward measures the spacing, which lumps do not change.
     """
     chance = 0.004 * exp(0.9 * dust + 0.5 * static + 0.0045 * slope**2 + 0.16 * age + 0.35 * dust * static)
     lumps = int(rng.poisson(min(chance, 5.0)))
@@ -167,11 +166,11 @@ def seed_belt(
 def peak_shaver(
     rng: np.random.Generator, heat: float, worn: float, wind: float, forecast: float
 ) -> tuple[bool, float]:
-    """Keep a factory below its contracted power for a month with a battery; a peak is paid by its height.
+    """Keep a factory below its contracted power for a month with a battery; a peak costs money by its height.
 
-    `heat` is the mean temperature in °C, `worn` the share of the capacity that is lost, `wind` the mean yield of the
-    turbine in per cent of the usual one, and `forecast` the error of the forecast in per cent. The month passes without
-    a peak above 900 kW. The reward falls with the price of the peaks, which has a heavy tail.
+    Drifts: `heat`, mean temperature (°C); `worn`, lost share of the capacity; `wind`, mean yield of the turbine
+    (percent of the usual one); `forecast`, its error (percent). The month passes without a peak above 900 kW. The
+    reward falls with the price of the peaks, which has a heavy tail.
     """
     need = 400.0 + 9.0 * max(heat - 18.0, 0.0) + 1.4 * (100.0 - wind)
     peaks = need * (1.0 + (0.05 + 0.012 * forecast) * rng.pareto(3.5, 30))
@@ -188,11 +187,11 @@ def six_axes(
     tool: float,
     tilt: float,
 ) -> tuple[bool, float]:
-    """Put 16 pegs into a plate with an arm whose axes and tool are a little off.
+    """Put 16 pegs into a plate with an arm whose axes and tool are slightly off.
 
-    `base`, `shoulder`, `elbow` and `wrist` are the errors of the joints in mrad, `tool` the error of its length in mm,
-    and `tilt` of the plate in mrad. The plate passes with at most one peg beside its hole. The reward falls with the
-    mean distance from the holes.
+    Drifts: `base`, `shoulder`, `elbow` and `wrist`, errors of the joints (mrad); `tool`, error of its length (mm);
+    `tilt` of the plate (mrad). The plate passes with at most one peg beside its hole. The reward falls with the mean
+    distance from the holes.
     """
     holes = rng.uniform(-0.15, 0.15, (16, 2))
     spots = rng.normal(0.0, 0.22, (16, 2))
@@ -205,9 +204,9 @@ def six_axes(
 def quiet_mixer(
     rng: np.random.Generator, water: float, sand: float, speed: float, minutes: float
 ) -> tuple[bool, float]:
-    """Mix concrete whose parts make up for each other; nothing breaks within the ranges.
+    """Mix concrete whose ingredients compensate for each other; nothing breaks within the ranges.
 
-    `water` is in per cent of the recipe's, `sand` likewise, `speed` of the drum in rpm, and `minutes` the time.
+    Drifts: `water` and `sand` (percent of the recipe); `speed` of the drum (rpm); `minutes`.
     """
     slump = 12.0 * (water / 100.0) * (100.0 / sand) + float(rng.normal(0.0, 0.6))
     turns = speed * minutes
@@ -217,9 +216,9 @@ def quiet_mixer(
 def quiet_swing(
     rng: np.random.Generator, phase: float, length: float, push: float, load: float
 ) -> tuple[bool, float]:
-    """Stop a swing of a theme park at its platform; its reward changes with the phase, but it always stops.
+    """Stop a theme park's swing at its platform; the reward changes with the phase, but it always stops.
 
-    `phase` is in rad, `length` in m, `push` relative to the usual one, and `load` in kg.
+    Drifts: `phase` (rad); `length` (m); `push` relative to the usual one; `load` (kg).
     """
     left = 0.2 * push * (1.0 + 0.3 * sin(3.0 * phase)) * sqrt(length / 6.0) + float(rng.normal(0.0, 0.02))
     return left < 1.0, 10.0 - 1.2 * left - 0.0002 * load

@@ -3,8 +3,9 @@
 They were written before any search ran on them, by an author who had not read the search. `detumbler` fails along one
 direction; `snow_groomer` only if three are bad at once; `sail_drone` in two opposite corners; `gondola` in a slanted
 band, beyond which it passes again; `sputter_coater` by a jump between two states; `pill_counter` only in some missions
-of a wide region; `fire_monitor` beyond a curve of two; `curling_robot` on both sides of a valley, by its reward alone;
-`extruder` with one of three options; `grain_elevator` in an island. The form is that of stress_worlds_13.py.
+of a wide region; `fire_monitor` beyond a curve of two directions; `curling_robot` on both sides of a valley, by its
+reward alone; `extruder` with one of three options; `grain_elevator` in an island. The form is that of
+stress_worlds_13.py.
 
     python benchmarks/stress_worlds_14.py [MACHINE ...]      # how safe nominal is, and how many random drifts fail
 """
@@ -23,17 +24,17 @@ from pytest_tarl.spaces import Choice, Span
 def detumbler(
     rng: np.random.Generator, inclination: float, spin: float, dipole: float, inertia: float
 ) -> tuple[bool, float]:
-    """Stop the spin of a small satellite by coils that push against the Earth's field, within three orbits.
+    """Stop a small satellite's spin within three orbits, with coils that push against the Earth's field.
 
-    `inclination` of the orbit is in degrees, `spin` after the launcher in °/s, `dipole` the disturbance by the
-    satellite's own magnetism in °/s per step, and `inertia` relative to the design. The coils cannot brake a spin about
-    the field, which hardly turns along an equatorial orbit. The mission passes below 0.6 °/s. The reward falls with the
+    Drifts: `inclination` of the orbit (degrees); `spin` after the launcher (°/s); `dipole`, disturbance by the
+    satellite's own magnetism (°/s per step); `inertia` relative to the design. The coils cannot brake a spin about the
+    field, which hardly turns along an equatorial orbit. The mission passes below 0.6 °/s. The reward falls with the
     mean spin.
     """
     first = rng.normal(0.0, 1.0, 3)
     x, y, z = (spin * first / float(np.linalg.norm(first))).tolist()
     pushes = rng.normal(0.0, dipole, (450, 3)).tolist()
-    turned = float(rng.uniform(0.0, 2.0 * pi))  # the Earth's magnetic axis is 11° off its own
+    turned = float(rng.uniform(0.0, 2.0 * pi))  # the Earth's magnetic axis is 11° from its rotation axis
     mx, my, mz = sin(0.19) * cos(turned), sin(0.19) * sin(turned), cos(0.19)
     level, up = cos(radians(inclination)), sin(radians(inclination))
     total = 0.0
@@ -57,8 +58,8 @@ def snow_groomer(
 ) -> tuple[bool, float]:
     """Groom 40 stretches of a ski run without sliding for more than 4 m.
 
-    `slope` is in degrees, `air` its temperature in °C, `worn` the height that the tracks' bars have lost in mm, and
-    `blade` the depth of the cut in cm, which changes the work but not the hold. The reward is the area.
+    Drifts: `slope` (degrees); `air`, temperature (°C); `worn`, lost height of the tracks' bars (mm); `blade`, depth of
+    the cut (cm), which changes the work but not the hold. The reward is the area.
     """
     snow = rng.normal(0.0, 0.022, 40) + float(rng.normal(0.0, 0.012))
     firm = 1.0 / (1.0 + exp(0.55 * (air - 1.5)))
@@ -76,9 +77,9 @@ def sail_drone(
 ) -> tuple[bool, float]:
     """Sail 700 m to a gate of 70 m.
 
-    `current` across the course is in m/s, `rudder` its offset in degrees, `wind` in m/s, and `waves` their height in m.
-    The pilot steers by the compass and a little by the distance from the course, so that a current and an offset
-    towards the same side add up, and to different sides cancel out. The reward falls with the distance from the course.
+    Drifts: `current` across the course (m/s); `rudder`, its offset (degrees); `wind` (m/s); `waves`, their height (m).
+    The pilot steers by the compass and a little by the distance from the course: a current and an offset add up if they
+    are towards the same side, and cancel out otherwise. The reward falls with the distance from the course.
     """
     speed = 1.1 + 0.16 * wind
     kicks = rng.normal(0.0, 0.6 + 1.6 * waves, 300)
@@ -99,11 +100,11 @@ def sail_drone(
 def gondola(
     rng: np.random.Generator, speed: float, load: float, wind: float, grease: float
 ) -> tuple[bool, float]:
-    """Bring a cabin over 14 supports that push it each time; it passes if it never swings by more than 14°.
+    """Bring a cabin over 14 supports, each of which pushes it; it passes if it never swings by more than 14°.
 
-    `speed` of the rope is in m/s, `load` in kg, which lowers the cabin's centre, `wind` along the rope in m/s, and
-    `grease` the damping of the hanger relative to the usual one. The cabin resonates if it passes a support with each
-    swing. The reward is the time that is saved.
+    Drifts: `speed` of the rope (m/s); `load` (kg), which lowers the cabin's centre; `wind` along the rope (m/s);
+    `grease`, damping of the hanger relative to the usual one. The cabin resonates if it passes one support per swing.
+    The reward is the time saved.
     """
     length = 4.6 + 0.0032 * load
     damping = 0.055 * grease
@@ -126,11 +127,11 @@ def gondola(
 def sputter_coater(
     rng: np.random.Generator, oxygen: float, pump: float, power: float, argon: float
 ) -> tuple[bool, float]:
-    """Coat 20 panes with an oxide; the target must not become covered by oxide itself.
+    """Coat 20 panes with an oxide; the target itself must not become covered by oxide.
 
-    `oxygen` is its flow in sccm, `pump` the speed relative to the design, `power` likewise, and `argon` its pressure in
-    µbar, which matters little. Metal from the target binds the oxygen; as the target becomes covered, it binds less,
-    and within seconds the target is covered altogether. Then the run ends. The reward is the thickness.
+    Drifts: `oxygen`, flow (sccm); `pump`, speed relative to the design; `power`, relative to the design; `argon`,
+    pressure (µbar), which matters little. Metal from the target binds the oxygen. As the target becomes covered, it
+    binds less, and within seconds it is covered completely; then the run ends. The reward is the thickness.
     """
     flows = oxygen * (1.0 + 0.05 * rng.normal(0.0, 1.0, 500)) * (1.0 + 0.01 * float(rng.normal(0.0, 1.0)))
     covered, gas, thick = 0.05, 0.3, 0.0
@@ -149,11 +150,11 @@ def sputter_coater(
 def pill_counter(
     rng: np.random.Generator, humidity: float, rate: float, size: float, lamp: float
 ) -> tuple[bool, float]:
-    """Count 40 bottles of 50 pills by a light barrier; pills that fall as a pair count as one.
+    """Count 40 bottles of 50 pills with a light barrier; two pills that fall together count as one.
 
-    `humidity` of the air is in per cent, `rate` in pills per second, `size` of the pills in mm, and `lamp` the
-    brightness relative to a new one. On about one day in four the chute is charged, and then pills stick together in
-    dry air. The day passes if no bottle is wrong by more than two. The reward is the number of bottles per minute.
+    Drifts: `humidity` of the air (percent); `rate` (pills per second); `size` of the pills (mm); `lamp`, brightness
+    relative to a new one. On about one day in four, the chute is charged, and pills stick together in dry air. The day
+    passes if no bottle is wrong by more than two. The reward is the number of bottles per minute.
     """
     charged = float(rng.uniform()) < 0.24
     dry = 1.0 / (1.0 + exp(0.7 * (humidity - 30.0)))
@@ -169,9 +170,9 @@ def fire_monitor(
 ) -> tuple[bool, float]:
     """Throw water through a window 12 m up and 30 m away with a cannon that corrects its elevation after each jet.
 
-    `pressure` is in bar, `headwind` in m/s (negative: from behind), `gusts` their deviation in m/s, and `worn` the
-    spread of the jet by a worn nozzle in m. At most 48° are allowed. The fire passes if 18 of the last 30 jets hit the
-    window, which is 3 m high. The reward falls with the jets' mean distance from its middle.
+    Drifts: `pressure` (bar); `headwind` (m/s; negative: from behind); `gusts`, their standard deviation (m/s); `worn`,
+    spread of the jet by a worn nozzle (m). The elevation is limited to 48°. The fire passes if 18 of the last 30 jets
+    hit the window, which is 3 m high. The reward falls with the jets' mean distance from its middle.
     """
     winds = (headwind + rng.normal(0.0, gusts, 36)).tolist()
     spreads = rng.normal(0.0, 0.25 + worn, 36).tolist()
@@ -199,9 +200,9 @@ def curling_robot(
 ) -> tuple[bool, float]:
     """Lay 10 curling stones near the centre; after each stone, the robot corrects its push a little.
 
-    `pebble` is the friction of the ice in thousandths, `lean` its slope to the side in mm/m, `spin` the turns of a
-    stone on its way, and `hall` the temperature in °C, which wears the pebble slowly. The game passes with one stone
-    within 4 m. The reward falls with the mean distance, so that it is the reward that breaks.
+    Drifts: `pebble`, friction of the ice (thousandths); `lean`, its slope to the side (mm/m); `spin`, turns of a stone
+    on its way; `hall`, temperature (°C), which wears the pebble slowly. The game passes with one stone within 4 m. The
+    reward falls with the mean distance, so it is the reward that breaks the guarantee.
     """
     luck = rng.normal(0.0, 1.0, (10, 2)).tolist()
     push, aim, total, near = 2.06, -0.82, 0.0, 0
@@ -221,10 +222,10 @@ def curling_robot(
 def extruder(
     rng: np.random.Generator, nozzle: str, heat: float, feed: float, moisture: float
 ) -> tuple[bool, float]:
-    """Print 60 layers; a filament that does not melt in time is ground off, and the print ends.
+    """Print 60 layers; if the filament does not melt in time, it is ground off and the print ends.
 
-    `nozzle` is its material, `heat` of the block in °C, `feed` in mm/s, and `moisture` of the filament in per cent,
-    which roughens the surface only. The reward is the surface's quality.
+    Drifts: `nozzle`, its material; `heat` of the block (°C); `feed` (mm/s); `moisture` of the filament (percent), which
+    only roughens the surface. The reward is the quality of the surface.
     """
     conducts, wears = {"brass": (1.0, 0.05), "ruby": (0.93, 0.0), "steel": (0.72, 0.02)}[nozzle]
     melts = 1.05 * conducts * (heat - 150.0) * (1.0 + rng.normal(0.0, 0.05, 60))
@@ -241,9 +242,9 @@ def grain_elevator(
 ) -> tuple[bool, float]:
     """Lift grain for a shift without a spark that ignites the dust.
 
-    `dust` is in g/m³, `moisture` of the grain in per cent, `spark` the usual energy of a spark in mJ, and `hours` since
-    the belt was oiled, which costs some power. Thin dust does not burn, and dense dust lacks air. The reward is the
-    grain that is lifted.
+    Drifts: `dust` (g/m³); `moisture` of the grain (percent); `spark`, usual energy of a spark (mJ); `hours` since the
+    belt was oiled, which costs some power. Thin dust does not burn, and dense dust lacks air. The reward is the lifted
+    grain.
     """
     sparks = spark * rng.lognormal(0.0, 0.35, 25)
     cloud = dust * float(rng.lognormal(0.0, 0.08))

@@ -1,7 +1,7 @@
-"""Further worlds of four directions, written after the search and not run while it was developed.
+"""More worlds of four directions, written after the search and not run while it was developed.
 
-The worlds follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal.
-The first two directions go from -0.5 to 0.5, the last two from 0 to 1.
+The conventions are those of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
+directions range from -0.5 to 0.5, the last two from 0 to 1.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from stress_worlds import NOISE, TOLERANCE, Vector, World
 
 
 def loop(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Control a first-order system whose gain and bias change and whose sensor gets noisy and late."""
+    """Control a first-order system whose gain and bias change, and whose sensor becomes noisy and late."""
     gain, bias, noise, late = 1.0 + 1.6 * x[0], 0.3 * x[1], 0.3 * x[2], round(8 * x[3])
     state, error, seen = 0.0, 0.0, [0.0] * 9
     for _ in range(40):
@@ -24,13 +24,13 @@ def loop(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def saturated(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose nothing until a weighted sum exceeds what a controller can compensate, and then lose reward quickly."""
+    """Lose nothing until a weighted sum exceeds what a controller can compensate, then lose reward quickly."""
     excess = abs(x[0]) + 0.7 * x[2] + 0.4 * x[3] - 0.45
     return True, 10.0 - 4.0 * TOLERANCE * max(float(excess), 0.0) / 0.3 + draws.normal(0.0, NOISE)
 
 
 def one_sided(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward for one sign of each of two directions, and gain reward for the other sign."""
+    """In each of two directions, lose reward for one sign and gain reward for the other."""
     lost = 1.3 * x[0] - 1.1 * x[1] + 0.3 * x[2] * x[3]
     return True, 10.0 - TOLERANCE * float(lost) / 0.7 + draws.normal(0.0, NOISE)
 
@@ -51,7 +51,7 @@ def worn(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def stairs(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward in steps of a sum, and fail beyond the last one."""
+    """Lose reward in steps of a sum, and fail beyond the last step."""
     level = np.floor(6.0 * (np.abs(x) @ [0.8, 0.8, 0.5, 0.3]))
     return bool(level < 5), 10.0 - 0.3 * TOLERANCE * float(level) + draws.normal(0.0, NOISE)
 

@@ -1,8 +1,8 @@
 """Six more worlds of four directions, written without knowledge of the search and never run with it before.
 
-The worlds follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal.
-The first two directions go from -0.5 to 0.5, the last two from 0 to 1. Each is a small simulation; its
-docstring names the shape of its failures.
+The conventions are those of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
+directions range from -0.5 to 0.5, the last two from 0 to 1. Each world is a small simulation; its docstring names the
+shape of its failures.
 
     python benchmarks/stress_worlds_3.py     # sample each world: nominal episodes and the share of drifts that fail
 """
@@ -35,7 +35,7 @@ def touchdown(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def rotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Run between two resonances of a shaft; drifts of the shaft's speed or stiffness approach one of them.
+    """Run between two resonances of a shaft; drifts in speed or stiffness approach one of them.
 
     Two separate regions.
     """
@@ -75,7 +75,7 @@ def aliased(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def bend(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Drive through a bend: speed or a wet road alone does little; with both, the car leaves the road.
+    """Drive through a bend: speed or a wet road alone does little; both together take the car off the road.
 
     An interaction.
     """
@@ -90,7 +90,7 @@ def bend(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def swell(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Hold a ship upright in swell whose period passes the ship's own and grows beyond. Not monotone."""
+    """Hold a ship upright in swell, whose period passes through the ship's own and beyond. Not monotone."""
     own, damping, height = 9.0 * (1.0 + 0.3 * x[0]), 0.16 * (1.0 + 0.8 * x[1]), 0.8 + 1.2 * x[3]
     period = 4.5 + 13.0 * x[2]
     pull, roll, rate, worst = 2 * np.pi / own, 0.0, 0.0, 0.0
@@ -110,7 +110,7 @@ NEW_WORLDS: Mapping[str, World] = {
 
 
 def main() -> None:
-    """Print a line per world: nominal episodes, random drifts, and drifts of one direction alone."""
+    """Print a line per world: nominal episodes, random drifts, and drifts of a single direction."""
     asked = argparse.ArgumentParser(description=main.__doc__)
     asked.add_argument("worlds", nargs="*", metavar="WORLD", help="default: all")
     worlds = asked.parse_args().worlds or NEW_WORLDS

@@ -1,10 +1,9 @@
 """Six closed loops of a robot or a plant, each in four directions, written without knowledge of the search.
 
-The worlds follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal.
-The first two directions go from -0.5 to 0.5, the last two from 0 to 1. Each world steps a model under a
-controller that was tuned at nominal. The docstring of a world gives the model, the controller, what passes,
-and the four directions in physical units; it does not say where the failures are. `QUIET_WORLDS` are two of
-the six on a fraction of their ranges, where nothing fails.
+The conventions are those of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
+directions range from -0.5 to 0.5, the last two from 0 to 1. Each world steps a model with a controller that was tuned
+at nominal. Its docstring gives the model, the controller, what passes, and the four directions in physical units, but
+not where the failures are. `QUIET_WORLDS` are two of the six on a fraction of their ranges, where nothing fails.
 
     python benchmarks/stress_worlds_4.py     # sample each world: nominal episodes and the share of drifts that fail
 """
@@ -31,12 +30,12 @@ def clip(value: float, size: float) -> float:
 def quadrotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Fly a planar quadrotor 2 m sideways in gusts and hold it there, with delayed state estimates.
 
-    A position loop commands a tilt, and an attitude loop commands a torque. The thrust compensates for the nominal
-    weight and the tilt, within limits. The flight passes if the quadrotor stays above 1 m, never tilts beyond 1 rad,
-    and ends within 0.7 m of its goal. The reward falls with the mean error of the second half.
+    A position loop commands a tilt, and an attitude loop commands a torque. Within limits, the thrust compensates for
+    the nominal weight and the tilt. The flight passes if the quadrotor stays above 1 m, never tilts beyond 1 rad, and
+    ends within 0.7 m of its goal. The reward falls with the mean error of the second half.
 
-    Directions: mass (0.7 to 1.3 kg), the centre of mass (±9 mm to the side), the age of the estimates (40 to 240 ms),
-    and the gusts (standard deviation 0.3 to 1.3 m/s²).
+    Directions: mass (0.7 to 1.3 kg); centre of mass (±9 mm to the side); age of the estimates (40 to 240 ms); gusts
+    (standard deviation of 0.3 to 1.3 m/s²).
     """
     p, q, r, s = x.tolist()
     mass, aside, age, gusts = 1.0 + 0.6 * p, 0.018 * q, 2 + round(10 * r), 0.3 + 1.0 * s
@@ -71,12 +70,12 @@ def quadrotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def forklift(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Drive a forklift over a ramp of 6 m and stop it, load first, at a rack 12 m away.
 
-    The speed follows the braking distance to the rack. The drive and the brake act on the front axle, which carries the
-    load, and its wheels slip beyond their grip. The run passes if the forklift stops 0 to 0.3 m before the rack within
-    15 s and never lifts its rear axle. The reward falls with the time that it takes.
+    The speed follows the braking distance to the rack. Drive and brake act on the front axle, which carries the load;
+    its wheels slip beyond their grip. The run passes if the forklift stops 0 to 0.3 m before the rack within 15 s and
+    never lifts its rear axle. The reward falls with the time taken.
 
-    Directions: the load (300 to 1500 kg), the slope of the ramp (-0.13 to 0.13 rad; negative is downhill), fading of
-    the brake (up to 65 %), and water on the floor (friction from 0.5 down to 0.12).
+    Directions: load (300 to 1500 kg); slope of the ramp (-0.13 to 0.13 rad; negative is downhill); fading of the brake
+    (up to 65 %); water on the floor (friction from 0.5 down to 0.12).
     """
     p, q, r, s = x.tolist()
     load, slope, brake, friction = 900.0 + 1200 * p, 0.26 * q, 5200.0 * (1 - 0.65 * r), 0.5 - 0.38 * s
@@ -107,12 +106,12 @@ def forklift(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def corridor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Drive a two-wheeled base along a bent corridor through two doors, by odometry and marks on the walls.
 
-    Pure pursuit steers by the estimated pose. A mark every 2 m corrects the estimate, unless the mark appears at least
-    0.3 m to the side, which counts as a wrong match. The run passes if the base passes both doors within 0.25 m of
-    their middle and always stays within 0.6 m of the path. The reward falls with the mean distance from the path.
+    Pure pursuit steers by the estimated pose. A mark every 2 m corrects the estimate, unless it appears at least 0.3 m
+    to the side, which counts as a wrong match. The run passes if the base passes both doors within 0.25 m of their
+    middle and always stays within 0.6 m of the path. The reward falls with the mean distance from the path.
 
-    Directions: one wheel larger than the other (±2 %), a bias of the gyro (±0.03 rad/s), latency of the commands and
-    the marks (0 to 0.4 s), and slip of the wheels in turns (0 to 35 %).
+    Directions: one wheel larger than the other (±2 %); bias of the gyro (±0.03 rad/s); latency of commands and marks (0
+    to 0.4 s); slip of the wheels in turns (0 to 35 %).
     """
     p, q, r, s = x.tolist()
     wear, bias, late, slip = 0.04 * p, 0.06 * q, round(4 * r), 0.35 * s
@@ -150,12 +149,12 @@ def corridor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def belt(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Pick up a box from a moving belt, guided by a camera above the belt.
 
-    The camera sees the box every 0.1 s until the arm covers it. The arm follows the predicted place at a limited speed
+    The camera sees the box every 0.1 s until the arm covers it. The arm follows the predicted place at a limited speed,
     and closes the gripper when it has been there for 0.24 s. The pick passes if the box fits between the fingers at its
     angle and does not slide out of the pads during the lift. All episodes earn the same reward.
 
-    Directions: the camera shifted across the belt (±11 mm) and turned (±0.09 rad), the belt faster than the arm
-    was told to expect (up to 110 %), and dust on the pads (up to 50 % of the friction).
+    Directions: camera shifted across the belt (±11 mm); camera turned (±0.09 rad); belt faster than the arm expects (up
+    to 110 %); dust on the pads (up to 50 % of the friction).
     """
     p, q, r, s = x.tolist()
     shift, turn, fast, dust = 22.0 * p, 0.18 * q, 1.0 + 1.1 * r, 1.0 - 0.5 * s
@@ -194,12 +193,12 @@ def belt(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def tank(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Hold the level of a tank with a sticking valve, while the set point changes and a batch is drawn off.
 
-    A PI controller with a limited integral reads the level with a lag. The valve does not move until the command
-    differs from its position by more than its stiction. The run passes if the tank neither overflows (2 m) nor falls
-    below the outlet (0.45 m). The reward falls with the mean error.
+    A PI controller with a limited integral reads the level with a lag. The valve moves only once the command differs
+    from its position by more than its stiction. The run passes if the tank neither overflows (2 m) nor falls below the
+    outlet (0.45 m). The reward falls with the mean error.
 
-    Directions: the pressure of the supply (-30 to 30 %), the demand (-30 to 30 %), stiction (0.5 to 25 % of the
-    stroke), and the lag of the reading (1 to 30 s).
+    Directions: pressure of the supply (-30 to 30 %); demand (-30 to 30 %); stiction (0.5 to 25 % of the stroke); lag of
+    the reading (1 to 30 s).
     """
     p, q, r, s = x.tolist()
     supply, demand, stiction, lag = 1.0 + 0.6 * p, 1.0 + 0.6 * q, 0.005 + 0.245 * r, 1.0 + 29.0 * s
@@ -225,13 +224,13 @@ def tank(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def berth(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Bring a boat into a berth beside a pier, in a current and gusts.
 
-    Integral line-of-sight guidance steers the boat. The two propellers of the boat set speed and turn rate,
-    and the speed falls with the distance. The manoeuvre passes if the boat arrives within 60 s, less than 0.9
-    m from the middle of the berth, at less than 0.7 m/s, with a heading error below 0.5 rad, and never
-    touched the pier 1.5 m to its right. The reward falls with the mean distance from the line.
+    Integral line-of-sight guidance steers the boat. Its two propellers set speed and turn rate, and the speed falls
+    with the distance. The manoeuvre passes if the boat arrives within 60 s, less than 0.9 m from the middle of the
+    berth, at less than 0.7 m/s, with a heading error below 0.5 rad, and without touching the pier 1.5 m to its right.
+    The reward falls with the mean distance from the line.
 
-    Directions: the current across (-0.16 to 0.16 m/s, positive away from the pier) and along (-0.2 to 0.2 m/s,
-    positive towards the berth), age of the position (0 to 2.5 s), and thrust that the left propeller lost (0 to 70 %).
+    Directions: current across (-0.16 to 0.16 m/s, positive away from the pier); current along (-0.2 to 0.2 m/s,
+    positive towards the berth); age of the position (0 to 2.5 s); thrust lost by the left propeller (0 to 70 %).
     """
     p, q, r, s = x.tolist()
     across, along, late, lost = 0.32 * p, 0.4 * q, round(5 * r), 0.7 * s
@@ -280,10 +279,10 @@ QUIET_WORLDS: Mapping[str, World] = {one.__name__: one for one in (quiet_quadrot
 
 
 def sampled(name: str, world: World, drifts: int, episodes: int) -> str:
-    """Return the table row of a world: the results of its nominal episodes and of episodes under random drifts.
+    """Return a world's table row: the results of nominal episodes and of episodes under random drifts.
 
-    A drift breaks the guarantee here if one of its episodes fails or their mean reward is too low. With few
-    episodes, this criterion overestimates the share of failing drifts in a world whose failures are rare.
+    Here, a drift counts as breaking the guarantee if one of its episodes fails or their mean reward is too low. With
+    few episodes, this overestimates the share of failing drifts in a world whose failures are rare.
     """
     draws, started = np.random.default_rng(0), process_time()
     usual = [world(np.zeros(4), np.random.default_rng([1, seed])) for seed in range(2000)]
@@ -304,7 +303,7 @@ def sampled(name: str, world: World, drifts: int, episodes: int) -> str:
 
 
 def main() -> None:
-    """Print a row per world: its nominal episodes, and those under uniformly drawn drifts."""
+    """Print a row per world: nominal episodes, and those under uniformly drawn drifts."""
     every = {**FOURTH_WORLDS, **QUIET_WORLDS}
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("worlds", nargs="*", metavar="WORLD", help="default: all")

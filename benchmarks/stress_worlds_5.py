@@ -1,8 +1,8 @@
-"""Six machines with drifts in physical units, written without knowledge of the search and of its results.
+"""Six machines with drifts in physical units, written without knowledge of the search and its results.
 
-Each mission is a small simulation that takes a generator and four drifts, whose ranges have nominal values anywhere in
-the range. As in a test that uses `tarl.rng`, an episode's noise depends only on its seed, so two drifts meet the same
-gusts and the same pushes. Each machine has the success rate and the tolerance that a tester would write for it.
+Each mission is a small simulation that takes a generator and four drifts, whose nominal values can be anywhere in their
+ranges. As in a test that uses `tarl.rng`, an episode's noise depends only on its seed, so gusts and pushes are the same
+under all drifts. Each machine has the success rate and tolerance that a tester would choose.
 
     python benchmarks/stress_worlds_5.py [MACHINE ...]       # how safe nominal is, and how many random drifts fail
 """
@@ -21,7 +21,7 @@ from pytest_tarl.spaces import Span
 def crane(rng: np.random.Generator, rope: float, wind: float, load: float, late: float) -> tuple[bool, float]:
     """Carry a container over 24 m with a speed profile shaped for a rope of 9 m, then hold it over the mark.
 
-    The gusts come every 7.4 s or so, the period of a rope of 13.6 m.
+    The gusts come about every 7.4 s, the period of a rope of 13.6 m.
     """
     step, steps = 0.2, 210
     period, phase = float(rng.normal(7.4, 0.15)), float(rng.uniform(0.0, 2 * pi))
@@ -53,9 +53,9 @@ def crane(rng: np.random.Generator, rope: float, wind: float, load: float, late:
 def balancer(
     rng: np.random.Generator, height: float, slope: float, tilt: float, volts: float
 ) -> tuple[bool, float]:
-    """Keep a two-wheeled robot at its place while somebody pushes it twice.
+    """Keep a two-wheeled robot in place while somebody pushes it twice.
 
-    `tilt` is the offset of the tilt sensor, which may add to the slope or make up for it.
+    `tilt` is the offset of the tilt sensor, which may add to the slope or compensate for it.
     """
     step, steps = 0.04, 150
     first, second = int(rng.integers(20, 50)), int(rng.integers(80, 110))
@@ -84,9 +84,9 @@ def balancer(
 def infusion(
     rng: np.random.Generator, sensitivity: float, meal: float, late: float, leak: float
 ) -> tuple[bool, float]:
-    """Hold the glucose of a patient between 70 and 180 mg/dl for eight hours and a meal, with a pump.
+    """Hold a patient's glucose between 70 and 180 mg/dl for eight hours and a meal, with a pump.
 
-    The patient announces a usual meal whatever they eat, so a small meal brings too much insulin.
+    The patient always announces a usual meal, so a smaller one leads to too much insulin.
     """
     steps = 96  # number of steps of five minutes
     eaten = int(rng.integers(14, 24))
@@ -102,7 +102,7 @@ def infusion(
         if known < 78.0:
             dose = 0.0
         if now == eaten:
-            dose += 18.0  # the same dose for every announced meal: what a usual meal needs
+            dose += 18.0  # the dose for a usual meal, whatever the patient eats
         gut += meal if now == eaten else 0.0
         absorbed, gut = 0.075 * gut, 0.925 * gut
         stored += 0.12 * (min(dose, 20.0) * (1.0 - leak) - stored)
@@ -119,8 +119,8 @@ def centrifuge(
 ) -> tuple[bool, float]:
     """Spin a sample up to 3,000 rpm; the rotor trips if it shakes too much.
 
-    The critical speed grows with the stiffness of the bearings. It lies below the working speed at nominal, and a
-    medium increase brings the two together. A slow ramp stays longer near the critical speed.
+    The critical speed grows with the stiffness of the bearings. At nominal, it is below the working speed; a medium
+    increase makes the two equal. A slow ramp stays near the critical speed for longer.
     """
     weight = abs(imbalance + float(rng.normal(0.0, 0.6)))
     critical = 2350.0 * sqrt(stiffness) * float(rng.normal(1.0, 0.008))
@@ -143,9 +143,9 @@ def centrifuge(
 def picker(
     rng: np.random.Generator, light: float, sway: float, colour: float, wear: float
 ) -> tuple[bool, float]:
-    """Pick the ripe ones of 24 fruits with a camera and a soft gripper before the time is up.
+    """Pick the ripe ones among 24 fruits with a camera and a soft gripper before the time is up.
 
-    The camera sees badly in dim light and in glare. Dim light also makes fruits look less ripe.
+    The camera sees badly in dim light and in glare. In dim light, fruits also look less ripe.
     """
     ripe = rng.random(24) < 0.65
     looks = np.where(ripe, 0.75, 0.25) + rng.normal(0.0, 0.09, 24)
@@ -173,10 +173,10 @@ def picker(
 def ward_tug(
     rng: np.random.Generator, capacity: float, lift: float, crowd: float, docking: float
 ) -> tuple[bool, float]:
-    """Deliver six trolleys on other floors of a hospital, each within its time; charge if the battery gets low.
+    """Deliver six trolleys to other floors of a hospital, each in time; charge if the battery gets low.
 
-    There is slack, so lifts or crowds matter alone only near the ends of their ranges. Charging costs minutes, and a
-    smaller battery may charge at a quieter time. In one mission of a hundred, a trolley is not where it should be.
+    There is slack, so lifts or crowds alone matter only near the ends of their ranges. Charging costs minutes, and a
+    smaller battery may charge at a quieter time. In one mission in a hundred, a trolley is not where it should be.
     """
     charge, clock, late, hours = 0.9 * capacity, 0.0, 0, 0.0
     for delivery in range(6):

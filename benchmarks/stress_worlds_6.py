@@ -1,9 +1,9 @@
-"""Six further machines with drifts in physical units, written without knowledge of the search and of its results.
+"""Six more machines with drifts in physical units, written without knowledge of the search and its results.
 
-The form is that of stress_worlds_5.py: each mission is a small simulation that takes a generator and four drifts, an
-episode's noise depends only on its seed, and each machine has the success rate and the tolerance that a tester would
-write for it. The docstring of a mission gives the model, the controller and what passes, but not where it fails.
-`QUIET_MACHINES` are two of the six on a part of their ranges, where nothing breaks the guarantee.
+The form is that of stress_worlds_5.py: each mission is a small simulation that takes a generator and four drifts; an
+episode's noise depends only on its seed; and each machine has the success rate and tolerance that a tester would
+choose. A mission's docstring gives the model, the controller and what passes, but not where it fails. `QUIET_MACHINES`
+are two of the six on part of their ranges, where nothing breaks the guarantee.
 
     python benchmarks/stress_worlds_6.py [MACHINE ...]       # how safe nominal is, and how many random drifts fail
 """
@@ -25,11 +25,11 @@ def glider(
 ) -> tuple[bool, float]:
     """Land a fixed-wing drone at a mark, down a glide path of 5.7°, with a flare at 2 m.
 
-    The throttle holds the indicated airspeed at 12 m/s (`pitot` is the sensor's offset), and the lift follows the glide
-    path. The landing passes if the drone touches down between 25 m before and 45 m behind the mark with a sink rate
-    below 1.7 m/s. The reward falls with the distance from the mark and with the sink rate.
+    The throttle holds the indicated airspeed at 12 m/s, and the lift follows the glide path; `pitot` is the airspeed
+    sensor's offset. The landing passes if the drone touches down between 25 m before and 45 m behind the mark with a
+    sink rate below 1.7 m/s. The reward falls with the distance from the mark and the sink rate.
     """
-    step, density, wing = 0.1, 1.225, 0.45  # units: s, kg/m³, m²
+    step, density, wing = 0.1, 1.225, 0.45  # s, kg/m³, m²
     shocks, reads = rng.normal(0.0, 1.0, 700).tolist(), rng.normal(0.0, 0.3, 700).tolist()
     there, height, speed, path = -260.0, 26.0 + float(rng.normal(0.0, 0.7)), 12.0, -0.1
     thrust, total, bent, gust, sink = 3.0, 0.0, 0.0, 0.0, 0.0
@@ -61,11 +61,11 @@ def glider(
 def lathe(
     rng: np.random.Generator, depth: float, turns: float, clamping: float, hardness: float
 ) -> tuple[bool, float]:
-    """Turn a shaft for 16 revolutions; each cut follows the waves that the last revolution left.
+    """Turn a shaft for 16 revolutions; each cut follows the waves left by the last revolution.
 
     A monitor lowers the feed by 15 % after each revolution that shakes too much. `depth` is in mm, `turns` in 1/min.
-    The part passes if the last four revolutions leave waves below 24 µm. The reward falls with the waves and with
-    the feed that was given up.
+    The part passes if the last four revolutions leave waves below 24 µm. The reward falls with the waves and the feed
+    given up.
     """
     step, stiffness = 0.0004, 2.0e7 * clamping  # s, N/m
     natural = 2 * pi * 140.0 * sqrt(clamping) * float(rng.normal(1.0, 0.01))
@@ -73,7 +73,7 @@ def lathe(
     cutting = 8.0e8 * hardness * 1e-3 * depth * float(rng.normal(1.0, 0.03))  # N/m
     rough = rng.normal(0.0, 4.0, 2000).tolist()
     period = max(2, round(60.0 / turns / step))
-    feed, place, speed = 1.0e-4, 0.0, 0.0  # units: m per revolution, m, m/s
+    feed, place, speed = 1.0e-4, 0.0, 0.0  # m per revolution, m, m/s
     past, waves, kept = [0.0] * period, [], 0.0
     for lap in range(16):
         laid, low, high = [], 1.0, -1.0
@@ -98,10 +98,10 @@ def gripper(
 ) -> tuple[bool, float]:
     """Lift a tomato, carry it and put it down with a two-finger gripper that feels slip.
 
-    The gripper starts at 3 N and adds 0.4 N whenever the slip sensor reports movement. `offset` is that of the force
-    sensor in N, `hurry` the acceleration of the arm in m/s². The pick passes if the tomato slips by less than 20 mm and
-    the true force stays below 8 N. One tomato of 80 is soft and breaks anyway. The reward falls with the slip and with
-    the force on the skin.
+    The gripper starts at 3 N and adds 0.4 N whenever the slip sensor reports movement. `offset` is the force sensor's
+    offset (N), and `hurry` the arm's acceleration (m/s²). The pick passes if the tomato slips by less than 20 mm and
+    the true force stays below 8 N. One tomato in 80 is soft and breaks anyway. The reward falls with the slip and the
+    force on the skin.
     """
     step, motor = 0.01, 0.0
     rub = friction * float(rng.normal(1.0, 0.05))
@@ -134,10 +134,10 @@ def mower(
 ) -> tuple[bool, float]:
     """Mow four lanes along a pond by satellite positions and wheel odometry.
 
-    `multipath` is the standard deviation of the slow error of a position in m, `bank` the slope towards the pond in
-    degrees, `wet` how slippery the lawn is, and `grass` its height in cm, which costs charge. The mission passes if
-    the mower never comes nearer to the pond than 0.1 m (the first lane is 0.65 m from it) and its battery lasts. The
-    reward is the mown share in percent.
+    Drifts: `multipath`, standard deviation of a position's slow error (m); `bank`, slope towards the pond (degrees);
+    `wet`, how slippery the lawn is; `grass`, its height (cm), which costs charge. The mission passes if the mower never
+    comes within 0.1 m of the pond (the first lane is 0.65 m away) and its battery lasts. The reward is the mown share
+    in percent.
     """
     step, lane, steps = 0.2, 75, 300  # the mower needs 15 s for a lane
     shocks, white = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.04, steps).tolist()
@@ -154,7 +154,7 @@ def mower(
         heading += step * turn + shakes[now] * (0.5 + wet)
         side += step * (0.8 * sin(heading) + sliding)
         charge -= 0.0004 + 0.00004 * grass + 0.0002 * abs(turn)
-        missed += max(0.0, abs(side) - 0.2) / 0.6  # lanes overlap, so 0.2 m do no harm
+        missed += max(0.0, abs(side) - 0.2) / 0.6  # lanes overlap, so the first 0.2 m do no harm
         safe = safe and 0.65 + 0.45 * (now // lane) - side > 0.1
     return safe and charge > 0.15, 100.0 * (1.0 - min(1.0, missed / steps))
 
@@ -162,11 +162,11 @@ def mower(
 def dish(
     rng: np.random.Generator, clock: float, wind: float, tilt: float, friction: float
 ) -> tuple[bool, float]:
-    """Follow a satellite with an antenna of 1.6° half beam width through a pass that culminates at 78°.
+    """Follow a satellite with an antenna of 1.6° half beam width, through a pass that culminates at 78°.
 
-    The antenna follows the ephemeris at its own time (`clock` in s) on a mount that is level up to `tilt` in degrees.
-    The azimuth drive has a rate loop with Coulomb friction, in °/s², and its speed is limited. The pass succeeds if
-    the signal is there during 88 % of the pass. The reward is the received share in percent.
+    The antenna follows the ephemeris at its own time (`clock`, error in s), on a mount that is not quite level (`tilt`,
+    in degrees). The azimuth drive has a rate loop with Coulomb friction (°/s²) and a limited speed. The pass succeeds
+    if the signal is received for 88 % of it. The reward is the received share in percent.
     """
     step, steps = 0.5, 400
     turned, angle = radians(tilt), float(rng.uniform(-0.6, 0.6)) + 0.9  # rad
@@ -201,10 +201,10 @@ def reflow(
 ) -> tuple[bool, float]:
     """Solder a board in an oven with eight zones, each with its own heater and thermocouple.
 
-    `load` is the heat capacity of the board relative to the usual one, `belt` the speed in m/min, `draught` adds to the
-    losses of the zones, and `probe` is the offset of the thermocouples in °C. The heaters are limited. The board passes
-    if its peak is between 228 and 256 °C and it is above 217 °C for 20 to 85 s. The reward falls with the distance of
-    both from the middle of their windows.
+    Drifts: `load`, heat capacity of the board relative to the usual one; `belt`, speed (m/min); `draught`, additional
+    losses of the zones; `probe`, offset of the thermocouples (°C). The heaters are limited. The board passes if its
+    peak is between 228 and 256 °C and it is above 217 °C for 20 to 85 s. The reward falls with the distance of both
+    from the middle of their windows.
     """
     step, length = 1.0, 0.4  # s, m
     settings = (115.0, 145.0, 165.0, 180.0, 205.0, 262.0, 264.0, 90.0)  # °C

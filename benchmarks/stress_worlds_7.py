@@ -1,10 +1,10 @@
-"""Six more machines with drifts in physical units, written without knowledge of the search and of its results.
+"""Six more machines with drifts in physical units, written without knowledge of the search and its results.
 
-The form is that of stress_worlds_6.py: each mission is a small simulation that takes a generator and four drifts, an
-episode's noise depends only on its seed, and each machine has the success rate and the tolerance that a tester would
-write for it. The docstring of a mission gives the model, the controller and what passes, but not where it fails.
-The boundaries were chosen to differ: one is steep along one direction, in two of them directions interact, in one
-failures become frequent only slowly, one failing region is narrow, and one direction fails only in the middle.
+The form is that of stress_worlds_6.py: each mission is a small simulation that takes a generator and four drifts; an
+episode's noise depends only on its seed; and each machine has the success rate and tolerance that a tester would
+choose. A mission's docstring gives the model, the controller and what passes, but not where it fails. The boundaries
+were chosen to differ: one is steep along one direction, two have interacting directions, in one failures become
+frequent only slowly, one failing region is narrow, and one direction fails only in the middle.
 
     python benchmarks/stress_worlds_7.py [MACHINE ...]       # how safe nominal is, and how many random drifts fail
 """
@@ -23,12 +23,12 @@ from pytest_tarl.spaces import Span
 def unloader(
     rng: np.random.Generator, pores: float, mass: float, lip: float, supply: float
 ) -> tuple[bool, float]:
-    """Unload twelve cartons from a trailer with two suction cups, one carton after the other.
+    """Unload twelve cartons from a trailer with two suction cups, one carton after another.
 
-    `pores` is the air in l/s that leaks through a usual carton at full vacuum, `mass` the mass of a usual carton in kg,
-    `lip` the wear of the cups from 0 to 1, and `supply` the pressure of the compressed air in bar. The arm grips up to
-    three times until the vacuum reaches 42 kPa, and otherwise lifts the carton slowly. The mission passes if at most
-    one carton falls. The reward is the number of cartons, less the time.
+    Drifts: `pores`, air that leaks through a usual carton at full vacuum (l/s); `mass`, of a usual carton (kg); `lip`,
+    wear of the cups (0 to 1); `supply`, pressure of the compressed air (bar). The arm grips up to three times until the
+    vacuum reaches 42 kPa; if it does not, the arm lifts the carton slowly. The mission passes if at most one carton
+    falls. The reward is the number of cartons, minus the time.
     """
     leaks, weights = rng.lognormal(0.0, 0.45, 12).tolist(), rng.lognormal(0.0, 0.25, 12).tolist()
     seats, jerks = rng.exponential(1.0, (12, 3)).tolist(), rng.lognormal(0.0, 0.15, 12).tolist()
@@ -55,11 +55,11 @@ def unloader(
 def blade(
     rng: np.random.Generator, wind: float, latency: float, payload: float, volts: float
 ) -> tuple[bool, float]:
-    """Hold a drone in front of the blade of a wind turbine for 22 s, while gusts push it towards the blade.
+    """Hold a drone in front of a wind turbine's blade for 22 s, while gusts push it towards the blade.
 
-    `wind` is in m/s, `latency` that of the position in s, `payload` in kg, `volts` of the battery. The pilot
-    controls position with a PID loop whose tilt is limited, and height with a PI loop whose thrust is. The inspection
-    passes if the drone stays within 1.6 m of its place and sinks by less than 1 m. The reward falls with both errors.
+    Drifts: `wind` (m/s); `latency` of the position (s); `payload` (kg); `volts` of the battery. A PID loop with limited
+    tilt controls the position, and a PI loop with limited thrust the height. The inspection passes if the drone stays
+    within 1.6 m of its place and sinks by less than 1 m. The reward falls with both errors.
     """
     step, steps = 0.05, 440
     shocks, reads = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.02, steps).tolist()
@@ -95,10 +95,10 @@ def neutraliser(
 ) -> tuple[bool, float]:
     """Neutralise waste water in a stirred tank with caustic soda before it enters the river.
 
-    `acid` is the concentration of the water relative to the usual one, `flow` its flow in m³/h, `lag` the lag of the
-    probe in s, and `reagent` the strength of the soda relative to the usual one. A PI loop on the pH doses with a pump
-    of limited stroke. The run passes if the water in the basin behind the tank stays between pH 6 and 9 for 96 % of the
-    time. The reward falls with the distance from pH 7.3 and with the soda.
+    Drifts: `acid`, concentration of the water relative to the usual one; `flow` (m³/h); `lag` of the probe (s);
+    `reagent`, strength of the soda relative to the usual one. A PI loop on the pH doses with a pump of limited stroke.
+    The run passes if the water in the basin behind the tank stays between pH 6 and 9 for 96 % of the time. The reward
+    falls with the distance from pH 7.3 and with the soda used.
     """
     step, steps = 5.0, 420
     shocks, reads = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.03, steps).tolist()
@@ -128,11 +128,11 @@ def neutraliser(
 def trotter(
     rng: np.random.Generator, floor: float, payload: float, grip: float, slope: float
 ) -> tuple[bool, float]:
-    """Trot with a quadruped over 8 m of a floor that gives way.
+    """Trot with a quadruped over 8 m of a yielding floor.
 
-    `floor` is its stiffness in kN/m, `payload` in kg, `grip` the friction of the feet, and `slope` in degrees. The
+    Drifts: `floor`, stiffness of the floor (kN/m); `payload` (kg); `grip`, friction of the feet; `slope` (degrees). The
     legs are springs with dampers that push off 2.1 times per second. The walk passes if the body bounces by less than
-    85 mm to either side and the feet slide by less than 0.5 m. The reward falls with bounces, slides and effort.
+    85 mm up and down and the feet slide by less than 0.5 m. The reward falls with bounces, slides and effort.
     """
     step, steps = 0.005, 1400
     mass = 28.0 + payload
@@ -166,10 +166,10 @@ def diver(
 ) -> tuple[bool, float]:
     """Follow a pipeline with an underwater vehicle, 2.6 m above a sea floor with dunes.
 
-    Two sonars measure the height; `first` and `second` are their offsets in m. The vehicle uses their mean; if they
-    differ by more than 0.35 m in the mean of some seconds, it follows the chart and a pressure gauge, at a greater
-    height. `current` is along the pipeline in m/s, `ballast` the weight in water in N. The survey passes if the vehicle
-    never comes nearer to the floor than 0.5 m and sees the pipeline, at most 4.3 m away, for 85 % of the time. The
+    Two sonars measure the height, with the offsets `first` and `second` (m). The vehicle uses their mean. If they
+    differ by more than 0.35 m over some seconds, it follows the chart and a pressure gauge instead, at a greater
+    height. `current` is along the pipeline (m/s), and `ballast` is the weight in water (N). The survey passes if the
+    vehicle never comes within 0.5 m of the floor and sees the pipeline, at most 4.3 m away, for 85 % of the time. The
     reward falls with the distance from 2.6 m.
     """
     step, steps = 0.4, 420
@@ -200,11 +200,11 @@ def diver(
 def shuttle(
     rng: np.random.Generator, grip: float, slope: float, load: float, delay: float
 ) -> tuple[bool, float]:
-    """Stop a driverless shuttle of 2.4 t at a line, from 6 m/s, without a regulation of locked wheels.
+    """Stop a driverless shuttle of 2.4 t at a line, from 6 m/s, without an anti-lock system.
 
-    `grip` is the friction of the road, `slope` in percent (positive is downhill), `load` in kg, and `delay` that of the
-    brake in s. The brake holds a speed profile of 2.9 m/s². A wheel that locks keeps 70 % of the friction until the
-    driver program lets go for 0.3 s. The stop passes if it ends between 1.2 m before and 0.6 m behind the line. The
+    Drifts: `grip`, friction of the road; `slope` (percent; positive is downhill); `load` (kg); `delay` of the brake
+    (s). The brake holds a speed profile of 2.9 m/s². A wheel that locks keeps 70 % of the friction until the driver
+    program releases the brake for 0.3 s. The stop passes if it ends between 1.2 m before and 0.6 m behind the line. The
     reward falls with the distance from the line and with the jerk.
     """
     step, steps = 0.05, 160

@@ -1,9 +1,8 @@
 """Six more machines with drifts in physical units, written before the search that they judge was changed.
 
-The form is that of stress_worlds_7.py, with short simulations. In `ferry` one direction matters; in `kiln` two
-interact; in `spinner` the failing region is a narrow band; in `climber` failures become frequent only slowly; in
-`labeller` the reward says nothing until the mission fails; in `valet` one direction is a choice, so the machine has
-five directions.
+The form is that of stress_worlds_7.py, with short simulations. In `ferry`, one direction matters; in `kiln`, two
+interact; in `spinner`, the failing region is a narrow band; in `climber`, failures become frequent only slowly; in
+`labeller`, the reward shows nothing until the mission fails; in `valet`, one of five directions is a choice.
 
     python benchmarks/stress_worlds_8.py [MACHINE ...]       # how safe nominal is, and how many random drifts fail
 """
@@ -24,9 +23,9 @@ def ferry(
 ) -> tuple[bool, float]:
     """Cross a river of 80 m twelve times with a ferry on a cable.
 
-    `current` is in m/s, `load` in t, `glare` the share of the landings at which the camera sees its mark late, and
-    `trim` in degrees. The day passes if at most one crossing takes more than 110 s. The reward is the number of
-    crossings in time, less the time.
+    Drifts: `current` (m/s); `load` (t); `glare`, share of the landings at which the camera sees its mark late; `trim`
+    (degrees). The day passes if at most one crossing takes more than 110 s. The reward is the number of crossings in
+    time, minus the time.
     """
     gusts, rolls = rng.normal(1.0, 0.12, 12), rng.random((12, 3))
     pushed = np.minimum(np.abs(current * gusts) / 2.6, 0.98)
@@ -41,10 +40,9 @@ def kiln(
 ) -> tuple[bool, float]:
     """Hold a tile kiln at 900 °C for four hours with a PI loop on the fuel, burning wood chips.
 
-    `moisture` is the moisture of the chips (a share), `draught` the draught of the chimney in Pa, `grate` the free
-    share of the grate, and `soot` the thickness of the soot on the probe in mm. Wet chips need much air. The firing
-    passes if the kiln stays within 60 K of its temperature for 85 % of the time. The reward falls with the error and
-    with the fuel.
+    Drifts: `moisture` of the chips (share); `draught` of the chimney (Pa); `grate`, its free share; `soot`, thickness
+    of the soot on the probe (mm). Wet chips need much air. The firing passes if the kiln stays within 60 K of its
+    temperature for 85 % of the time. The reward falls with the error and the fuel used.
     """
     shocks, reads = rng.normal(0.0, 1.0, 80).tolist(), rng.normal(0.0, 4.0, 80).tolist()
     wall = float(rng.normal(1.0, 0.03))
@@ -69,7 +67,7 @@ def spinner(
 ) -> tuple[bool, float]:
     """Spin a drum of 18 kg on springs at a constant speed.
 
-    `speed` is in revolutions per second, `stiffness` of the springs in kN/m, `load` in kg, and `imbalance` in kg·m. The
+    Drifts: `speed` (revolutions per second); `stiffness` of the springs (kN/m); `load` (kg); `imbalance` (kg·m). The
     run passes if the drum moves by less than 9 mm. The reward falls with the movement.
     """
     mass, drum = 18.0 + load * float(rng.normal(1.0, 0.02)), 2 * pi * speed * float(rng.normal(1.0, 0.006))
@@ -83,11 +81,11 @@ def spinner(
 def climber(
     rng: np.random.Generator, wet: float, rise: float, worn: float, load: float
 ) -> tuple[bool, float]:
-    """Climb 60 stairs with a robot on tracks, which may lose its hold at each stair.
+    """Climb 60 stairs with a robot on tracks, which may lose its hold on each stair.
 
-    `wet` is from 0 to 1, `rise` the height of a stair in cm, `worn` the wear of the tracks from 0 to 1, and `load` in
-    kg. A robot that loses its hold catches itself in four of five cases; otherwise it falls. The reward is the time
-    saved, which depends little on the slips.
+    Drifts: `wet` (0 to 1); `rise`, height of a stair (cm); `worn`, wear of the tracks (0 to 1); `load` (kg). A robot
+    that loses its hold recovers in four of five cases; otherwise it falls. The reward is the time saved, which depends
+    little on the slips.
     """
     slips, catches, tempo = rng.random(60), rng.random(60), float(rng.normal(0.0, 0.3))
     hold = (
@@ -104,9 +102,9 @@ def labeller(
 ) -> tuple[bool, float]:
     """Stick labels on thirty jars; a camera behind the machine counts those that are more than 3 mm off.
 
-    `speed` is the speed of the belt in m/s, `tilt` the tilt of the light barrier in degrees, `cold` the difference of
-    the glue's temperature from the usual one in K (downwards), and `slip` the slip of the belt in percent. The batch
-    passes with at most two bad labels; the reward is 10 for a good batch and 8 for a bad one.
+    Drifts: `speed` of the belt (m/s); `tilt` of the light barrier (degrees); `cold`, how much colder than usual the
+    glue is (K); `slip` of the belt (percent). The batch passes with at most two bad labels. The reward is 10 for a good
+    batch and 8 for a bad one.
     """
     jitter, dabs = rng.normal(0.0, 0.45, 30), rng.exponential(1.0, 30)
     middle = 9.0 * (speed - 0.5) - 0.55 * tilt + 0.06 * speed * slip * slip
@@ -120,9 +118,9 @@ def valet(
 ) -> tuple[bool, float]:
     """Park a car eight times, braking from 3 m/s before a wall that a camera sees at 4.5 m.
 
-    `surface` is asphalt, cobbles or leaves; `slope` is in percent (positive is downhill), `tread` in mm, `mass` of the
-    passengers in kg, and `fog` from 0 to 1. The job passes if every stop is at least 0.3 m before the wall. The reward
-    falls with the distance left and with hard braking.
+    Drifts: `surface` (asphalt, cobbles or leaves); `slope` (percent; positive is downhill); `tread` (mm); `mass` of the
+    passengers (kg); `fog` (0 to 1). The job passes if every stop is at least 0.3 m before the wall. The reward falls
+    with the distance left and with hard braking.
     """
     usual, rough = {"asphalt": (0.75, 0.03), "cobbles": (0.55, 0.12), "leaves": (0.25, 0.12)}[surface]
     luck, looks = rng.normal(0.0, 1.0, 8), rng.exponential(0.06, 8)

@@ -1,8 +1,9 @@
 """Six more machines with drifts in physical units, written without knowledge of the search and its results.
 
-The form is that of stress_worlds_8.py, with short simulations in four directions each. In `palletiser` one direction is
-a choice; in `skimmer` the reward is noisy; in `matlander` failures are rare; in `walkway` the failing region is small
-and away from the axes; in `downhill` a failure needs two directions together; in `pumps` one part fails after another.
+The form is that of stress_worlds_8.py, with short simulations in four directions each. In `palletiser`, one direction
+is a choice; in `skimmer`, the reward is noisy; in `matlander`, failures are rare; in `walkway`, the failing region is
+small and away from the axes; in `downhill`, a failure needs two directions together; in `pumps`, one part fails after
+another.
 
     python benchmarks/stress_worlds_9.py [MACHINE ...]       # how safe nominal is, and how many random drifts fail
 """
@@ -17,7 +18,7 @@ from stress_machines import GRAVITY, Machine, clipped, command
 
 from pytest_tarl.spaces import Choice, Span
 
-# force (N), and the share that is lost if the carton is wet
+# force (N), and the share lost if the carton is wet
 CARTONS = {"plain": (90.0, 0.42), "glossy": (96.0, 0.18), "film": (74.0, 0.0)}
 
 
@@ -26,9 +27,9 @@ def palletiser(
 ) -> tuple[bool, float]:
     """Stack 24 cartons of about 4 kg with a suction gripper.
 
-    `carton` is plain, glossy or wrapped in film; `humidity` is a share, `pace` the acceleration of the arm in m/s², and
-    `tilt` the tilt of the floor in degrees. The pallet passes if at most one carton falls. The reward is the number of
-    cartons, less the time.
+    Drifts: `carton` (plain, glossy or wrapped in film); `humidity` (share); `pace`, acceleration of the arm (m/s²);
+    `tilt` of the floor (degrees). The pallet passes if at most one carton falls. The reward is the number of cartons,
+    minus the time.
     """
     force, wet = CARTONS[carton]
     masses, seals = rng.normal(4.0, 0.25, 24), rng.normal(1.0, 0.05, 24)
@@ -44,9 +45,9 @@ def skimmer(
 ) -> tuple[bool, float]:
     """Collect litter on a lake for a day with a solar boat.
 
-    `wind` is in m/s, `weed` the share of the lake that is overgrown, `sun` the energy of the day in kWh, and `drag` the
-    relative drag of the fouled hull, 1 when clean. The amount of litter on the lake varies widely. The day passes if
-    the boat comes home with energy left. The reward is the litter in kg.
+    Drifts: `wind` (m/s); `weed`, overgrown share of the lake; `sun`, energy of the day (kWh); `drag` of the fouled hull
+    (1 when clean). The amount of litter on the lake varies widely. The day passes if the boat comes home with energy
+    left. The reward is the litter in kg.
     """
     litter = 18.0 * float(rng.lognormal(0.0, 0.45))
     clouds, squall = float(rng.normal(1.0, 0.08)), float(rng.gumbel(0.0, 0.5))
@@ -64,9 +65,9 @@ def matlander(
 ) -> tuple[bool, float]:
     """Land a courier drone on a mat of 1.2 m in a yard.
 
-    `gusts` is the scale of the gusts in m/s, `swing` the swing of the parcel on its cord in degrees, `dusk` runs from 0
-    (day) to 1 (night), and `battery` is the share of the thrust that is left. A landing fails if a single gust or a
-    lost mark carries the drone off the mat. The reward is the accuracy, which hardly depends on the drifts.
+    Drifts: `gusts`, their scale (m/s); `swing` of the parcel on its cord (degrees); `dusk` (0 is day, 1 is night);
+    `battery`, share of the thrust that is left. A landing fails if a single gust or a lost mark carries the drone off
+    the mat. The reward is the accuracy, which hardly depends on the drifts.
     """
     gust = gusts * float(rng.gumbel(0.9, 0.28))
     lost = float(rng.exponential(0.06)) * (0.4 + 1.2 * dusk**2)
@@ -81,9 +82,9 @@ def walkway(
 ) -> tuple[bool, float]:
     """Carry samples over a boardwalk with a wheeled robot on springs; each plank is a small bump.
 
-    `speed` is in m/s, `plank` the width of a plank in m, `load` in kg, and `wear` the wear of the dampers from 0 to 1.
-    The springs resonate if the planks come at the frequency of the loaded robot. The trip passes if the samples are
-    shaken by less than 20.5 mm. The reward falls with the shaking.
+    Drifts: `speed` (m/s); `plank`, width of a plank (m); `load` (kg); `wear` of the dampers (0 to 1). The springs
+    resonate if the planks come at the loaded robot's frequency. The trip passes if the samples are shaken by less than
+    20.5 mm. The reward falls with the shaking.
     """
     rhythm = 2 * pi * speed * float(rng.normal(1.0, 0.01)) / plank
     own = sqrt(26000.0 / (55.0 + load + float(rng.normal(0.0, 0.5))))
@@ -98,10 +99,10 @@ def walkway(
 def downhill(
     rng: np.random.Generator, slope: float, load: float, air: float, breeze: float
 ) -> tuple[bool, float]:
-    """Bring logs down a forest road of 2 km with a tractor that holds its speed by its brakes.
+    """Bring logs down a forest road of 2 km with a tractor that holds its speed with its brakes.
 
-    `slope` is in percent, `load` in t, `air` the temperature in °C, and `breeze` the wind from ahead in m/s. The trip
-    passes if the brakes stay below 420 °C. The reward falls when they are above 300 °C.
+    Drifts: `slope` (percent); `load` (t); `air`, temperature (°C); `breeze`, headwind (m/s). The trip passes if the
+    brakes stay below 420 °C. The reward falls when they are above 300 °C.
     """
     step, hot, worst = 20.0, 25.0 + 0.5 * air, 0.0
     bends = rng.normal(1.0, 0.15, 34).tolist()
@@ -117,10 +118,10 @@ def downhill(
 def pumps(
     rng: np.random.Generator, inflow: float, clogged: float, volts: float, silt: float
 ) -> tuple[bool, float]:
-    """Keep a pit dry with three pumps; a pump that works too hard trips, and the others must do its work as well.
+    """Keep a pit dry with three pumps; if a pump trips from too much work, the others must do its work as well.
 
-    `inflow` is in l/s, `clogged` the share of each screen that is blocked, `volts` the share of the usual voltage, and
-    `silt` from 0 to 1. The night passes if the pit does not overflow. The reward falls with the water in it.
+    Drifts: `inflow` (l/s); `clogged`, blocked share of each screen; `volts`, share of the usual voltage; `silt` (0 to
+    1). The night passes if the pit does not overflow. The reward falls with the water in it.
     """
     screens = (1.0 - clogged * np.clip(rng.normal(1.0, 0.12, 3), 0.5, 1.5)).tolist()
     rain = rng.normal(1.0, 0.10, 90).tolist()

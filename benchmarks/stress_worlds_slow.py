@@ -1,6 +1,6 @@
-"""Six machines whose share of failed missions grows slowly with the drifts, for development of the search.
+"""Six machines whose share of failed missions grows slowly with the drifts, for developing the search.
 
-In each, chance decides much of a mission, so a drift that fails 1 mission in 10 is far from one that fails 1 in 2. The
+Chance decides much of each mission, so a drift that fails 1 mission in 10 is far from one that fails 1 in 2. The
 conventions are those of stress_worlds_5.py.
 
     python benchmarks/stress_worlds_slow.py [MACHINE ...]    # how safe nominal is, and how many random drifts fail
@@ -20,10 +20,10 @@ from pytest_tarl.spaces import Span
 def courier(
     rng: np.random.Generator, range_: float, rain: float, crowd: float, relay: float
 ) -> tuple[bool, float]:
-    """Send twelve orders by radio, each with three tries; the mission passes if at least eleven arrive.
+    """Send twelve orders by radio, with three tries each; the mission passes if at least eleven arrive.
 
-    `range_` is in km, `rain` in mm/h, `crowd` the number of other senders, and `relay` the height of the relay in m.
-    The reward is the number of orders that arrive.
+    Drifts: `range_` (km); `rain` (mm/h); `crowd`, number of other senders; `relay`, height of the relay (m). The reward
+    is the number of orders that arrive.
     """
     fading = rng.normal(0.0, 4.0, 36)  # dB
     quiet = rng.random(36)
@@ -36,10 +36,10 @@ def courier(
 def night_shift(
     rng: np.random.Generator, payload: float, frost: float, age: float, hills: float
 ) -> tuple[bool, float]:
-    """Work a night on one charge; how much a night takes varies by a third.
+    """Work for a night on one charge; how much charge a night takes varies by a third.
 
-    `payload` is in kg, `frost` in °C, `age` in years, and `hills` in m of climb per hour. The shift passes if the
-    charge lasts. The reward is the work done, which hardly depends on the drifts.
+    Drifts: `payload` (kg); `frost` (°C); `age` (years); `hills`, climb per hour (m). The shift passes if the charge
+    lasts. The reward is the work done, which hardly depends on the drifts.
     """
     busy = exp(float(rng.normal(0.0, 0.33)))
     charge = 100.0 * (1.0 - 0.05 * age) * (1.0 - 0.006 * max(0.0, 15.0 - frost))
@@ -50,11 +50,11 @@ def night_shift(
 def docking(
     rng: np.random.Generator, multipath: float, current: float, lag: float, draught: float
 ) -> tuple[bool, float]:
-    """Back a barge into a berth by satellite positions whose slow error has the standard deviation `multipath` in m.
+    """Back a barge into a berth by satellite positions.
 
-    `current` is across in m/s, `lag` that of the rudder in s, and `draught` in m makes the barge slow. The manoeuvre
-    passes if the barge is never more than 1.6 m beside the line in the last 40 s. The reward falls with the mean
-    deviation.
+    Drifts: `multipath`, standard deviation of the positions' slow error (m); `current` across (m/s); `lag` of the
+    rudder (s); `draught` (m), which makes the barge slow. The manoeuvre passes if the barge is never more than 1.6 m
+    beside the line in the last 40 s. The reward falls with the mean deviation.
     """
     step, steps = 0.5, 200
     shocks, waves = rng.normal(0.0, 1.0, steps).tolist(), rng.normal(0.0, 0.02, steps).tolist()
@@ -76,9 +76,9 @@ def docking(
 def seal(
     rng: np.random.Generator, pressure: float, heat: float, cycles: float, grit: float
 ) -> tuple[bool, float]:
-    """Run a pump for a day; its seal bursts by chance, the sooner the more it is strained. The reward shows nothing.
+    """Run a pump for a day; its seal bursts by chance, sooner under more strain. The reward shows nothing of this.
 
-    `pressure` is in bar, `heat` in °C, `cycles` per hour, and `grit` in g/l.
+    Drifts: `pressure` (bar); `heat` (°C); `cycles` per hour; `grit` (g/l).
     """
     lasting = float(rng.exponential(1.0))
     strain = (
@@ -90,10 +90,10 @@ def seal(
 def bin_picking(
     rng: np.random.Generator, oil: float, camera: float, speed: float, mix: float
 ) -> tuple[bool, float]:
-    """Pick twenty parts out of a bin; the mission passes if at most two fall.
+    """Pick twenty parts from a bin; the mission passes if at most two fall.
 
-    `oil` is a film in µm, `camera` an offset in mm, `speed` in m/s, and `mix` the share of unknown parts. The reward is
-    the number of parts in time.
+    Drifts: `oil`, thickness of the film (µm); `camera`, offset (mm); `speed` (m/s); `mix`, share of unknown parts. The
+    reward is the number of parts picked in time.
     """
     luck, aside = rng.random(20), rng.normal(0.0, 1.0, 20)
     unknown = rng.random(20) < mix
@@ -106,10 +106,10 @@ def bin_picking(
 def night_patrol(
     rng: np.random.Generator, fog: float, speed: float, people: float, glare: float
 ) -> tuple[bool, float]:
-    """Patrol a yard in which people step out of gates; the robot must stop before it comes within 0.4 m.
+    """Patrol a yard in which people step out of gates; the robot must never come within 0.4 m of them.
 
-    `fog` is the extinction in 1/m, `speed` in m/s, `people` per hour, and `glare` takes sight on one side. The reward
-    is the patrolled length, less a little for each stop.
+    Drifts: `fog`, extinction (1/m); `speed` (m/s); `people` per hour; `glare`, which limits sight on one side. The
+    reward is the patrolled length, minus a little for each stop.
     """
     draws, sides, quick = rng.random((40, 2)), rng.random(40), rng.gamma(4.0, 0.25, 40)
     met = min(40, int((rng.random(40) < people / 40.0).sum()))

@@ -1,7 +1,7 @@
-"""A pytest plugin that stores the outcome of each test while it records every statement of a package.
+"""A pytest plugin that stores each test's outcome while it records every statement of a package.
 
-`third_party_suites.py` passes the package's folder in SUITE_RECORDED (empty: do not record) and the result's path in
-SUITE_RESULT.
+`third_party_suites.py` passes the package's folder in SUITE_RECORDED (empty: do not record), and the path for the
+result in SUITE_RESULT.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import pytest
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.recorder import Recorder
 
-EVERY = 0.2  # CPU time after which recorded events are dropped, to bound the memory (s)
+EVERY = 0.2  # CPU seconds after which recorded events are dropped, to limit memory
 OPEN = ExitStack()
 FOUND: dict[str, list[str]] = {}
 COUNTS = {"sites": 0, "events": 0, "files": 0}
@@ -47,7 +47,7 @@ def begin() -> None:
     if folder := os.environ["SUITE_RECORDED"]:
         _record(Path(folder))
     try:
-        settings = import_module("hypothesis").settings  # a module of the suite's environment
+        settings = import_module("hypothesis").settings  # a module in the suite's environment
     except ImportError:
         return
     settings.register_profile("suites", deadline=None, derandomize=True, database=None)
@@ -82,7 +82,7 @@ def _record(package: Path) -> None:
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
-    """Store the outcome of a phase of a test."""
+    """Store the outcome of a test phase."""
     name = re.sub(r"0x[0-9a-f]+", "0x", report.nodeid)
     word = f"{report.when} {report.outcome}" + (" (expected)" if hasattr(report, "wasxfail") else "")
     FOUND.setdefault(name, []).append(word)
@@ -102,4 +102,4 @@ def pytest_unconfigure() -> None:
 
 
 if "SUITE_RESULT" in os.environ:
-    begin()  # called on import, before any conftest.py imports the package
+    begin()  # called on import, before a conftest.py imports the package

@@ -1,11 +1,11 @@
-"""Compare the flows of launched nodes with judgements that were made from the code before anyone saw the report.
+"""Compare the flows of launched nodes with judgements made from the code before anyone saw the report.
 
     python benchmarks/system_flows.py TREES [--judged benchmarks/system_flows_2.json]
 
-TREES contains a folder `owner+name` for each judged repository, at the commit that the judgements name. For the launch
-file "", all nodes of the tree are analysed without launch files. Each judgement (node, topic, topic, kind) states that
-in this node the first topic influences the second. Flows of nodes that are not Python are not judged. A flow is right
-if node, topics and kind agree.
+TREES has a folder `owner+name` for each judged repository, at the commit named in the judgements. For the launch file
+"", all nodes of the tree are analysed without launch files. A judgement (node, topic, topic, kind) says that, in this
+node, the first topic influences the second. Flows of nodes that are not Python are not judged. A flow is right if node,
+topics and kind agree.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Flow = tuple[str, str, str]
 
 
 def main() -> int:
-    """Print the figures of each launch file, and of all launch files together."""
+    """Print the figures for each launch file, and for all together."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("trees", type=Path)
     parser.add_argument("--judged", type=Path, default=JUDGED)

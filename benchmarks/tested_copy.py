@@ -1,4 +1,4 @@
-"""A copy of the checkout in which tests run: its environment, its compiled files, and the runs of pytest in it."""
+"""A copy of the checkout for running tests: its environment, its compiled files, and pytest runs in it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def environment(copy: Path) -> dict[str, str]:
 
 
 def with_own_settings(copy: Path, tests: Iterable[str]) -> list[str]:
-    """Return the tests and the folders below them that have a pytest.ini of their own."""
+    """Return the tests, and folders below them, that have their own pytest.ini."""
     inner = {
         ini.parent.relative_to(copy).as_posix()
         for test in tests
@@ -46,15 +46,14 @@ def apart(copy: Path, tests: Iterable[str]) -> list[list[str]]:
 def precompiled(copy: Path) -> None:
     """Compile the sources of the copy.
 
-    The compiled files contain the digests of their sources. Python compares these digests, so it notices every inserted
-    fault.
+    The compiled files contain the digests of their sources, which Python compares; so it notices every inserted fault.
     """
     for package in ("pytest_tarl", "tarl_lint"):
         compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
 
 
 def collected(copy: Path, tests: Sequence[str]) -> None:
-    """Compile the tests of the copy by collecting them, without running any."""
+    """Compile the copy's tests by collecting them, without running any."""
     command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider"]
     surroundings = {**environment(copy), "PYTHONDONTWRITEBYTECODE": ""}
     for arguments in apart(copy, tests):

@@ -1,10 +1,9 @@
-"""Run test suites of other projects, plain and with every statement recorded, and compare the outcome of each test.
+"""Run other projects' test suites, plain and with every statement recorded, and compare each test's outcome.
 
 `python benchmarks/third_party_suites.py toolz attrs` downloads the sdists (pinned, with hashes), installs them in a
-temporary environment, runs each suite twice and prints the tests whose outcomes differ. If some outcomes differ, the
-plain suite runs up to three more times, and then the files of the tests that still differ run up to twenty times. An
-outcome that also occurs in a plain run is not a consequence of recording. The exit status is 1 if recording changed an
-outcome.
+temporary environment, runs each suite twice, and prints the tests whose outcomes differ. If there are any, the plain
+suite runs up to three more times; then the files of the tests that still differ run up to twenty times. An outcome that
+also occurs in a plain run is not caused by recording. The exit status is 1 if recording changed an outcome.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN_RUNS = 4  # maximum number of plain runs
-FILE_RUNS = 20  # maximum number of further plain runs, restricted to the files whose tests still differ
+FILE_RUNS = 20  # maximum number of further plain runs, only of the files whose tests still differ
 TOOLS = ("pytest==8.4.2", "hypothesis==6.135.0")
 
 
@@ -45,7 +44,7 @@ SUITES = {
     "toolz": Suite(
         "1.0.0", "2c86e3d9a04798ac556793bced838816296a2f085017664e4995cb40a1047a02", "toolz", ("toolz", "tlz")
     ),
-    "sortedcontainers": Suite(  # its sdist contains no tests, but examples in every docstring
+    "sortedcontainers": Suite(  # its sdist has no tests, but examples in every docstring
         "2.4.0",
         "25caa5a06cc30b6b83d11423433f65d1f9d76c4c6a0c90e3379eaa43b9bfdb88",
         "sortedcontainers",
@@ -66,7 +65,7 @@ SUITES = {
         "2f8490dbdbd419366cef1516032ab06d07ccb5839ef54905e842a472692d4204",
         "transitions",
         needs=("six==1.17.0", "dill==0.4.0", "mock==5.2.0"),
-        # this file of tests checks the sources with other tools
+        # this test file checks the sources with other tools
         options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),
     ),
     "jinja2": Suite(
@@ -92,10 +91,10 @@ SUITES = {
             "jsonschema==4.24.0",
             "pytz==2025.2",
             "pytest-mock==3.14.1",
-            "pytest-benchmark==5.1.0",  # needed because the suite's settings contain options of this plugin
+            "pytest-benchmark==5.1.0",  # the suite's settings contain this plugin's options
             "email-validator",
         ),
-        # a plugin that runs tests in threads registers the marks that its tests use
+        # a plugin that runs tests in threads registers the marks that the tests use
         options=(
             *("-W", "ignore::pytest.PytestUnknownMarkWarning"),
             *("--ignore=tests/benchmarks", "--ignore=tests/mypy", "--ignore=tests/test_docs.py"),
@@ -144,16 +143,16 @@ def environment(folder: Path) -> Path:
 
 
 def install(python: Path, *what: str) -> None:
-    """Install distributions. Exit with pip's output on failure."""
+    """Install distributions. On failure, exit with pip's output."""
     done = subprocess.run([python, "-m", "pip", "install", "-q", *what], capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"pip install {' '.join(what)}:\n{done.stderr[-2000:]}")
 
 
 def sources(name: str, folder: Path, python: Path) -> Path:
-    """Download a suite's sdist, check its hash and return the folder of its contents."""
+    """Download a suite's sdist, check its hash, and return the folder of its contents."""
     suite, store = SUITES[name], folder / name
-    # the metadata of the suite, and the packages that it needs
+    # the suite's metadata, and the packages that it needs
     install(python, f"{name}=={suite.version}", *suite.needs)
     wanted = ("--no-deps", "--no-binary", ":all:", "-d", str(store), f"{name}=={suite.version}")
     subprocess.run([python, "-m", "pip", "download", "-q", *wanted], check=True, capture_output=True)
@@ -169,7 +168,7 @@ def sources(name: str, folder: Path, python: Path) -> Path:
 def compared(
     name: str, folder: Path, python: Path, keep: Path | None, only: tuple[str, ...] = ()
 ) -> list[str]:
-    """Print the row of a suite, or of some of its tests; return the tests whose outcome recording changed."""
+    """Print the row of a suite or of some of its tests; return the tests whose outcome recording changed."""
     suite, at = SUITES[name], sources(name, folder, python)
     suite = replace(suite, tests=only or suite.tests)
     plain, plain_seconds = run(python, suite, at, folder, record=False)
@@ -213,7 +212,7 @@ def again(
 
 
 def different(runs: list[Outcomes], *others: Outcomes) -> list[str]:
-    """Return the tests with an outcome in `others` that they did not have in any of the runs."""
+    """Return the tests with an outcome in `others` that they had in none of the runs."""
     names = {name for one in (*runs, *others) for name in one}
     return sorted(
         name
@@ -223,7 +222,7 @@ def different(runs: list[Outcomes], *others: Outcomes) -> list[str]:
 
 
 def run(python: Path, suite: Suite, at: Path, folder: Path, *, record: bool) -> tuple[dict[str, Any], float]:
-    """Run a suite; return the outcomes of its tests and the CPU seconds."""
+    """Run a suite; return its tests' outcomes and the CPU seconds."""
     result = folder / "result.json"
     result.unlink(missing_ok=True)
     package = at / suite.package

@@ -2,10 +2,10 @@
 
     python benchmarks/three_worlds.py
 
-Needs rclpy (`make setup-ros2`, then `.venv-ros2/bin/python`). The test is the tank of tests/realros/external: one node,
-one sensor, two simulated seconds an episode in steps of 0.1 s. Each kind is recorded in a separate run. CPU seconds are
-those of the test and all its processes, including a simulator. The costs are the difference between a run of many
-episodes and a run of few, which excludes the fixed cost of a run.
+This needs rclpy (`make setup-ros2`, then `.venv-ros2/bin/python`). The test is the tank of tests/realros/external: one
+node, one sensor, and two simulated seconds per episode in steps of 0.1 s. Each kind is recorded in a separate run. CPU
+seconds include all processes of the test, such as a simulator. The cost of an episode comes from the difference between
+a run of many episodes and a run of few, which excludes the fixed cost of a run.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ FEW = 2
 
 
 def main() -> int:
-    """Print the milliseconds per episode, in wall time, in CPU time, and in CPU time relative to the first kind."""
+    """Print the milliseconds per episode: wall time, CPU time, and CPU time relative to the first kind."""
     argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0]).parse_args()
     first = 0.0
     print(
@@ -46,7 +46,7 @@ def main() -> int:
 
 
 def _seconds(world: str, options: tuple[str, ...], episodes: int) -> tuple[float, float]:
-    """Record the test; return the wall seconds and the CPU seconds that it took."""
+    """Record the test; return the wall seconds and CPU seconds."""
     with TemporaryDirectory() as name:
         folder = runpy.run_path(str(TANK))["write"](Path(name) / "tank", external=world != "inside")
         if world == "reset":
@@ -62,7 +62,7 @@ def _seconds(world: str, options: tuple[str, ...], episodes: int) -> tuple[float
 
 
 def _reset_instead(test: Path) -> None:
-    """Keep the simulator's process, and begin each episode with its reset service."""
+    """Keep the simulator's process, and start each episode with its reset service."""
     text = test.read_text()
     text = text.replace('step="/step",', 'step="/step", reset="/reset",')
     changed = text.replace('environment={"START": repr(level), "PUMP": repr(pump)},', "")

@@ -1,6 +1,6 @@
-"""Run pytest in forks of a process that has imported large libraries, so that a run takes less time to start.
+"""Run pytest in forks of a process that has already imported large libraries, so that runs start faster.
 
-The packages under test and their tests are imported in each run, never before. Needs `os.fork`.
+The packages under test and their tests are always imported in the run itself. Needs `os.fork`.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 
-# Large libraries that the tests import. Plugins of pytest are left out, because pytest rewrites their assertions when
-# it imports them.
+# large libraries that the tests import, without pytest plugins, whose assertions pytest rewrites on import
 LIBRARIES = (
     "_pytest.config",
     "_pytest.pytester",
@@ -65,7 +64,7 @@ class Runner:
         self._output = output
 
     def __call__(self, arguments: Sequence[str], limit: float) -> tuple[int, str]:
-        """Return pytest's exit status, negative if a signal ended it, and its output.
+        """Return pytest's exit status (negative if a signal ended it) and its output.
 
         If the run takes longer than the limit in seconds, kill it with its child processes and raise TimeoutExpired.
         """
@@ -89,7 +88,7 @@ class Runner:
 def warm(
     folder: Path, environment: Mapping[str, str], libraries: Sequence[str] = LIBRARIES
 ) -> Iterator[Runner]:
-    """Start a process that runs pytest in the folder with the environment, and end it afterwards."""
+    """Start a process that runs pytest in the folder, with this environment, and end it afterwards."""
     with (
         tempfile.TemporaryDirectory() as outputs,
         subprocess.Popen(
@@ -111,7 +110,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("libraries", nargs="*", help="modules to import beforehand")
     libraries = parser.parse_args().libraries
-    sys.path[0] = ""  # set the entry as `python -m pytest` does
+    sys.path[0] = ""  # as `python -m pytest` does
     for name in libraries:
         with suppress(ImportError):
             import_module(name)
@@ -147,7 +146,7 @@ def run(arguments: list[str], output: str) -> None:
 
 
 def ended(child: int, limit: float) -> str:
-    """Wait for a fork and return its exit status; kill it at the limit and return `timeout`."""
+    """Wait for a fork and return its exit status; after the limit, kill it and return `timeout`."""
     end = time.monotonic() + limit
     while not (found := os.waitpid(child, os.WNOHANG))[0]:
         if time.monotonic() > end:

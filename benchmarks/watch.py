@@ -4,9 +4,9 @@
     python benchmarks/watch.py delays [--streams 20]       # a drift that begins at mission 0, 1,000 and 100,000
     python benchmarks/watch.py speed [--missions 1000000]  # the command on a log, CPU time and memory
 
-Two common methods are run for comparison. One is a two-sample Kolmogorov-Smirnov test at 5 % of the totals of the
-last 40 missions against the recorded ones, repeated every ten missions. The other is a two-sided CUSUM of the totals
-(k = 0.5, h = 5), standardised by the mean and standard deviation of the recorded missions.
+Two common methods run for comparison. One is a two-sample Kolmogorov-Smirnov test at 5 % of the last 40 missions'
+totals against the recorded ones, repeated every ten missions. The other is a two-sided CUSUM of the totals (k = 0.5, h
+= 5), standardised by the recorded missions' mean and standard deviation.
 """
 
 from __future__ import annotations
@@ -40,28 +40,28 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 ALPHA = 0.05
-LIFE = 1000  # number of missions in a stream without drift, and maximum number after the start of a drift
+LIFE = 1000  # missions in a stream without drift, and maximum number after a drift starts
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
-DISTINCT = 5000  # number of distinct missions in the log of the speed test
+DISTINCT = 5000  # distinct missions in the log of the speed test
 WINDOW, EVERY = 40, 10
 METHODS = ("watch", "success", "mean", "world", "repeated KS", "CUSUM")
 
 
 @dataclass(frozen=True)
 class Alarms:
-    """The mission, counted from 1, at which each method first raised an alarm; None if it never did."""
+    """The mission (from 1) at which each method first raised an alarm; None if it never did."""
 
     first: dict[str, int | None]
 
     def after(self, method: str, start: int) -> int | None:
-        """Return the missions from the start of a drift to the first alarm; None if the alarm came earlier or never."""
+        """Return the missions from a drift's start to the first alarm; None if that came earlier or never."""
         found = self.first[method]
         return found - start if found is not None and found > start else None
 
 
 def watched(monitor: Monitor, missions: Sample, until: bool) -> None:
-    """Pass missions to a monitor; with `until`, pass the missions in portions and stop at the first alarm."""
+    """Pass missions to a monitor; with `until`, in portions, stopping at the first alarm."""
     if not until:
         monitor.take(missions, np.zeros(missions.episodes))
         return
@@ -87,7 +87,7 @@ def watched(monitor: Monitor, missions: Sample, until: bool) -> None:
 
 
 def alarms(monitor: Monitor, offline: Floats, online: Floats) -> Alarms:
-    """Return the first alarm of each method; `online` are the totals of all missions."""
+    """Return each method's first alarm; `online` has the totals of all missions."""
     raised = monitor.processes.alarm
     stated = {bound.what: raised[row : row + 1] for row, bound in enumerate(monitor.bounds)}
     nothing = raised[:0]
@@ -137,7 +137,7 @@ def cusum(offline: Floats, online: Floats) -> int | None:
 
 
 def false_alarms(streams: int, worlds: Sequence[str]) -> None:
-    """Print how often each method raises an alarm without drift."""
+    """Print how often each method raises an alarm without a drift."""
     print(
         f"{streams} streams of {LIFE} missions without drift, each with a new recording; share with any alarm"
     )
@@ -186,7 +186,7 @@ def delays(streams: int, long: int) -> None:
 
 
 def _drifts(world: str, number: int, start: int) -> dict[float, Alarms]:
-    """Return the alarms of all methods for each size of a drift, after the same missions without drift."""
+    """Return all methods' alarms for each size of a drift, after the same missions without drift."""
     rng = generator(number, f"watch/delays/{world}/{start}")
     designed = pools(world, 0.0).designed
     recorded = fixture(designed, rng, total_range(world))
@@ -223,7 +223,7 @@ def _told(count: float) -> str:
 
 
 def speed(missions: int) -> None:
-    """Print the cost of the command on a log of missions with ten steps over 24 places."""
+    """Print what the command costs on a log of missions with ten steps over 24 places."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         size = _logged(folder, missions)
@@ -241,7 +241,7 @@ def speed(missions: int) -> None:
 
 
 def _loop() -> float:
-    """Return the CPU seconds of a plain loop, a measure of the machine's current speed."""
+    """Return the CPU seconds of a plain loop, which measures the machine's current speed."""
     begin = process_time()
     total = 0
     for number in range(10_000_000):

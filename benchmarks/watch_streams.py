@@ -1,4 +1,4 @@
-"""Streams of missions drawn from pools: each stream has a new recording, then designed or drifting missions."""
+"""Streams of missions drawn from pools: a new recording for each, then designed or drifting missions."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from pytest_tarl.learning.tables import END, Chain, Sample
 from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
-OFFLINE = 200  # number of missions in a recording
-# number of missions in each pool: designed missions (True), drifted missions (False)
+OFFLINE = 200  # missions in a recording
+# number of missions per pool: designed (True), drifted (False)
 POOLED = {True: 3000, False: 1500}
 POOLED_EXAMPLE = {True: 1000, False: 300}
-FAILING = 0.03  # share of the designed missions that count as failed: those with the smallest totals
+FAILING = 0.03  # share of the designed missions, those with the smallest totals, that count as failed
 Rows = NDArray[np.int64]
 Generator = np.random.Generator
 
 
 def constant(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission with a fixed length and the same cost in every step."""
+    """Draw a mission of fixed length that costs the same in every step."""
     return [(int(rng.integers(4)),) for _ in range(10)], [-0.1] * 10
 
 
@@ -44,7 +44,7 @@ def heavy(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
 
 
 def rare(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission of one step; one mission of fifty loses much reward."""
+    """Draw a mission of one step; one mission in fifty loses much reward."""
     return [(0,)], [-100.0 if rng.random() < 0.02 else 1.0]
 
 
@@ -59,7 +59,7 @@ WATCHED = (*WORLDS, *EXAMPLES, *SYNTHETIC)
 
 @dataclass(frozen=True)
 class Pools:
-    """Missions of one world, as designed and at one size of the drift, with a common table of cells."""
+    """A world's missions, as designed and at one size of the drift, with a common table of cells."""
 
     designed: Sample
     drifting: Sample
@@ -67,9 +67,9 @@ class Pools:
 
 @cache
 def pools(world: str, size: float) -> Pools:
-    """Return the pools of a world; a size of 0 means no drift.
+    """Return a world's pools; a size of 0 means no drift.
 
-    A mission succeeds if its total is above the 3 % quantile of the designed totals.
+    A mission succeeds if its total is above the designed totals' 3 % quantile.
     """
     designed, drifting = _pool(world, 0.0), _pool(world, size)
     least = float(np.quantile(designed.total, FAILING))
@@ -96,7 +96,7 @@ def _pool(world: str, size: float) -> Sample:
 
 @cache
 def total_range(world: str) -> Range | None:
-    """Return the range of a mission's total, with or without drift, as a marker declares it, or None."""
+    """Return a mission's range of totals, with or without drift, as a marker declares it, or None."""
     if world in UNBOUNDED:
         return None
     totals = [_pool(world, size).total for size in ((0.0, 1.0) if world not in SYNTHETIC else (0.0,))]
@@ -107,7 +107,7 @@ def total_range(world: str) -> Range | None:
 def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixture:
     """Return a recording of missions drawn with replacement, with the cells that they visit.
 
-    The recording contains the bounds of `--tarl-record`: on success and, with a declared range, on the mean.
+    The recording has the bounds of `--tarl-record`: on success and, with a declared range, on the mean.
     """
     chosen = gathered(pool, rng.integers(pool.episodes, size=OFFLINE))
     seen = np.unique(chosen.chain.cell)
@@ -120,12 +120,12 @@ def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixt
 
 
 def stream(pool: Sample, cells: tuple[tuple[int, ...], ...], count: int, rng: Generator) -> Sample:
-    """Return `count` missions drawn with replacement; all cells other than `cells` become one cell."""
+    """Return `count` missions drawn with replacement; all cells not in `cells` become one."""
     return _over(gathered(pool, rng.integers(pool.episodes, size=count)), pool, cells)
 
 
 def gathered(pool: Sample, rows: Rows) -> Sample:
-    """Return the missions in these rows, in this order, with repetitions."""
+    """Return the missions in these rows, in order and with repetitions."""
     ends = np.searchsorted(pool.chain.episode, np.arange(pool.episodes + 1))
     lengths = (ends[1:] - ends[:-1])[rows]
     total = int(lengths.sum())

@@ -1,4 +1,4 @@
-"""Workspaces of benchmarks, each kept as one text: its files follow each other, each after a line `--- path`."""
+"""Workspaces of benchmarks, each in one text; each of its files follows a line `--- path`."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ class Texts:
 
     @classmethod
     def read(cls, path: Path) -> Texts:
-        """Return the files of the workspace that a text contains."""
+        """Return the files of the workspace in a text."""
         parts = _FILE.split(path.read_text("utf-8"))
         return cls(dict(zip(parts[1::2], parts[2::2], strict=True)))
 
     def unpack(self, root: Path) -> None:
-        """Write the files below a folder."""
+        """Write the files to a folder."""
         for name, text in self.files.items():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text, "utf-8")
