@@ -243,7 +243,7 @@ def _run(
     imported: Sequence[int],
     request: Mapping[str, Any],
 ) -> None:
-    """Run the tests of a request in this process, a fork, and end it."""
+    """Run the tests of a request in this process (a fork), then end the process."""
     status = 1
     try:
         os.setsid()

@@ -57,7 +57,7 @@ def tide_lock(
     """Bring a barge over the sill of a lock; the tide has a period of 12.4 hours.
 
     Drifts: `hour` since high water; `draught` of the barge (m); `silt` on the sill (m); `wind` from the sea (m/s;
-    negative: from the land), which raises the water. The passage passes with 0.4 m under the keel. The reward falls
+    negative: from the land), which raises the water. The mission passes with 0.4 m under the keel. The reward falls
     with the time that the barge needs.
     """
     surge = 0.02 * wind + float(rng.normal(0.0, 0.06))

@@ -125,7 +125,7 @@ def main() -> None:
 
 
 def run(arguments: list[str], output: str) -> None:
-    """Run pytest in this process, a fork, and end it."""
+    """Run pytest in this process (a fork), then end the process."""
     os.setsid()
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     file = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)

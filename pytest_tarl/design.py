@@ -60,7 +60,7 @@ def value(
     seed: int,
     point: Point | None = None,
 ) -> Any:
-    """Return an episode's `tarl_drift`: the design's value, changed by the scenario; None without both.
+    """Return an episode's `tarl_drift`: the design's value, changed by the scenario; None if there is neither.
 
     The design includes the nominal values of all spaces. If the scenario is a space, its values are those of `point`
     or, without one, of a random point determined by the seed. Raise SettingsError if the design has a drift that the

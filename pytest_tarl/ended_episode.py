@@ -26,7 +26,7 @@ class EndedEpisode:
     requirements: Requirements
     situation: Situation
     faults: Faults
-    # whether a drift or a fault is active; nodes that publish nothing are then no error
+    # whether a drift or a fault is active; it is then not an error if nodes publish nothing
     drifted: bool
     # whether a repair candidate runs; with a good one, a watchdog node may have nothing to publish
     changed: bool

@@ -68,7 +68,7 @@ class Tarl:
         self._replay = replay
         # a recorded mission already includes the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
-        # whether a drift is active; nodes that publish nothing are then no error
+        # whether a drift is active; it is then not an error if nodes publish nothing
         self._drifted = drifted or bool(self._faults.active)
         self._changed = changed  # whether a repair candidate replaces the text of a file
         self._outputs = outputs

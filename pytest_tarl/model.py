@@ -297,7 +297,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """A drift's range, and the numbers drawn from it in each world, one per episode as in the totals."""
+    """A drift's range, and the numbers drawn from it in each world: one per episode, in the order of the totals."""
 
     part: str
     low: float

@@ -1,4 +1,4 @@
-"""Commands for recordings: `tarl show`, `tarl diff`, and `tarl summary` of their comparisons."""
+"""Commands for recordings and comparisons: `tarl show`, `tarl diff` and `tarl summary`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Decompose the variance of a fleet's missions into versions, sites, seasons and robots."""
+"""Decompose the variance of a fleet's missions by versions, sites, seasons and robots."""
 
 from __future__ import annotations
 

@@ -124,7 +124,7 @@ def _reason(text: str, problem: str) -> str:
 
 
 def _connected(node: AbstractNode) -> Any:
-    """Check a tree, and replace iff and xor by other connectives. Raise ReadingError."""
+    """Check a tree, and replace `iff` and `xor` by other connectives. Raise ReadingError."""
     if isinstance(node, COUNTING):
         raise ReadingError(
             "next, prev, rise and fall count samples, but steps may differ in length: give a time in "

@@ -1,7 +1,7 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
 Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes the same share of the wealth
-each time. If the claim is true, the wealth ever reaches 1/risk times its initial value with a probability of at most
+each time. If the claim is true, the probability that the wealth ever reaches 1/risk times its initial value is at most
 `risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
 mixture of bets. Two bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few
 bad episodes.

@@ -80,8 +80,8 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 def evidence_above(passed: int, episodes: int, least: float) -> float:
     """Return the log of an e-process against the claim that the success rate is at most `least`.
 
-    An e-process measures evidence and may be read at any time. If the claim is true, its log ever exceeds log(1 / α)
-    with a probability of at most α (Ville's inequality). This one averages the likelihood ratio uniformly over all
+    An e-process measures evidence and may be read at any time. If the claim is true, the probability that its log ever
+    exceeds log(1 / α) is at most α (Ville's inequality). This one averages the likelihood ratio uniformly over all
     higher rates (Robbins 1970).
     """
     failed = episodes - passed

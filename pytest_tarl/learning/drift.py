@@ -130,8 +130,8 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
     """Return the verdicts of several comparisons with p-values corrected by Holm, and updated results.
 
-    A comparison has one p-value for a drift and one for a worse world, which is the smaller of those for a loss and for
-    more failures. The correction multiplies the larger of these two by the same factor.
+    A comparison has a p-value for a drift, and one for a worse world. The latter is the smaller of two p-values: for a
+    loss, and for more failures. The correction multiplies the larger of these two by the same factor.
     """
     drifts, worse = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_worse"))
     found = []
@@ -213,9 +213,9 @@ def _drift(
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
     """Return the cells that deployed episodes avoid significantly, as booleans of shape (cells,).
 
-    Of N episodes in total, n are deployed and K visit a cell. If the worlds are equal, no deployed episode visits the
-    cell with probability C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number of
-    candidate cells.
+    Of N episodes in total, n are deployed and K visit a cell. If the worlds are equal, the probability that no deployed
+    episode visits the cell is C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number
+    of candidate cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
     often = np.bincount(been, minlength=len(offline.cells))

@@ -45,7 +45,7 @@ def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Differen
     """Return the result of the last look, with p-values and interval adjusted for all looks.
 
     An adjusted p-value is the smallest p / share over the looks. The interval uses the risk of the last look, so it is
-    valid at whichever look the comparison stops.
+    valid no matter at which look the comparison stops.
     """
     last = seen[-1][1]
     p_drift, p_loss, p_failures = (

@@ -57,7 +57,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     """Solve q = ρ̄ + Wq by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
     This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by the factor
-    γ. After gradients that converged, one or two sweeps suffice; after a breakdown, more are needed.
+    γ. If the gradients converged, one or two sweeps are enough; if they broke down, more are needed.
     """
 
     def ahead(values: Floats) -> Floats:

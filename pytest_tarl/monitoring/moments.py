@@ -17,7 +17,7 @@ class Moments:
     times: list[float] = field(default_factory=list)
 
     def add(self, first: int, times: Sequence[float]) -> None:
-        """Store the start times of consecutive missions, the first of which is number `first`."""
+        """Store the start times of consecutive missions, beginning with mission number `first`."""
         number = first + -first % self.stride
         while number < first + len(times):
             self.times.append(times[number - first])

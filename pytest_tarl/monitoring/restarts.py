@@ -2,8 +2,8 @@
 
 Bet k multiplies its stake by a factor f ≥ 0 whose mean is at most 1. If the bet starts before observation τ, its value
 is 1 before τ, and the product of all f_t with t ≥ τ afterwards. A mixture over k and τ whose weights sum to 1 is again
-an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors). By Ville's inequality, it ever exceeds 1/α with a probability
-of at most α. Although there is a start before every observation, each observation costs only one product, because
+an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors). By Ville's inequality, the probability that it ever exceeds 1/α
+is at most α. Although there is a start before every observation, each observation costs only one product, because
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 

@@ -117,7 +117,7 @@ def apply_command(patch: Path, cwd: Path) -> str:
 
 
 def blob_id(content: bytes) -> str:
-    """Return the blob id that git gives to a content."""
+    """Return git's blob id of a content."""
     return hashlib.sha1(b"blob %d\0" % len(content) + content, usedforsecurity=False).hexdigest()
 
 

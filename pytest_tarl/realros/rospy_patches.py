@@ -231,7 +231,7 @@ def _patch_connecting(copy: RospyCopy, network: RospyNetwork) -> None:
         known = self.pubs if kind == copy.modules["rospy.impl.registration"].Registration.PUB else self.subs
         new = name not in known
         impl = acquire(self, kind, name, data_class)
-        impl.ref_count += new  # one reference more, so that the connections outlive the episode
+        impl.ref_count += new  # an additional reference, so that the connections outlive the episode
         network.joined(copy, impl, publishes=known is self.pubs)
         return impl
 

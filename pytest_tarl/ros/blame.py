@@ -30,7 +30,7 @@ def of_traceback(traceback: TracebackType | None) -> Place | None:
 
 
 def of_frame(frame: FrameType | None) -> Place | None:
-    """Return the innermost place in user code of a running or suspended frame."""
+    """Return the innermost place in user code that a running or suspended frame has reached."""
     return _innermost(_outwards(frame))
 
 

@@ -14,7 +14,7 @@ from pytest_tarl.stressing.rays import Ray, distance
 CONFIDENCE = 0.9  # confidence of the interval reported for a boundary
 # maximum probability that the guarantee still holds at the interval's far end
 FAR_RISK = (1.0 - CONFIDENCE) / 6
-NEARER = 0.98  # a distance counts as nearer if it is at most this share of the other distance
+NEARER = 0.98  # one distance counts as nearer than another if it is at most this share of it
 # a failure that contains a nearer one is reported only if it is at least this many times as far away
 APART = 1.03
 # maximum probability that the guarantee already fails at the interval's near end

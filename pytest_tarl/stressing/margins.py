@@ -23,7 +23,7 @@ class Margin:
     """The margin of one side of a range, or of an option.
 
     The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`; either is None if nothing was shown.
-    Values of a range are numbers. For an option, 0 is the nominal option and 1 is this one.
+    Values of a range are numbers. For an option, 0 is the nominal option and 1 the option itself.
     """
 
     name: str  # name of a direction; an option includes its value, as in camera='down'

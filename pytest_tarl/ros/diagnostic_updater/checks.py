@@ -103,7 +103,7 @@ class TimeStampStatus(DiagnosticTask):
         self._zero = False
 
     def tick(self, stamp: Any) -> None:
-        """Take a stamp: seconds, or a time of ROS 1 or ROS 2."""
+        """Record a stamp: seconds, or a time of ROS 1 or ROS 2."""
         seconds = _seconds(stamp)
         if seconds == 0:
             self._zero = True

@@ -150,7 +150,7 @@ class ChainIkSolverPos_NR_JL(ChainIkSolverPos_NR):  # noqa: N801
 
 
 class ChainIkSolverPos_LMA(_Solver):  # noqa: N801
-    """Joint values for a pose of the tip, by the Levenberg-Marquardt method; rotations weigh 0.01."""
+    """Joint values for a pose of the tip, by the Levenberg-Marquardt method; rotations have the weight 0.01."""
 
     def __init__(
         self, chain: Chain, eps: float = 1e-5, maxiter: int = 500, eps_joints: float = 1e-15

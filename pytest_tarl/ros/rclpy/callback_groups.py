@@ -61,7 +61,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return self.active is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Return whether no callback was running; if so, count this one as running."""
+        """Count this callback as running unless another one is; return whether it may start."""
         if self.active is not None:
             return False
         self.active = entity

@@ -33,7 +33,7 @@ class RcutilsLogger:
         self._logger = python_logging.getLogger(f"rclpy.{name}" if name else "rclpy")
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """Return a logger below this one."""
+        """Return a child logger."""
         return RcutilsLogger(f"{self.name}.{name}" if self.name else name)
 
     def set_level(self, level: int) -> None:

@@ -65,7 +65,7 @@ class Future:
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
-        """Register a function that is called with this future when it is done, by the executor if there is one."""
+        """Register a function to call with this future when it is done. The executor, if any, makes the call."""
         if self.pending():
             self._callbacks.append(callback)
         elif self._executor is not None:

@@ -37,7 +37,7 @@ class Inbox:
         self.topic = topic
         self.message_type = message_type
         self.callbacks: list[Callback] = []
-        self.subscribers = 0  # number of Subscriber objects, without unregistered ones
+        self.subscribers = 0  # number of Subscriber objects that are still registered
         self.capacity: int | None = None
         self._waiting: deque[Any] = deque()
         self._busy = False

@@ -121,7 +121,7 @@ class ServerGoalHandle:
 
 
 class ClientGoalHandle:
-    """A goal that a client sent, after the server's answer."""
+    """A goal that a client sent and the server has answered."""
 
     def __init__(self, client: ActionClient, goal_id: Any, *, accepted: bool, stamp: Any) -> None:
         self._client = client
