@@ -29,6 +29,11 @@ class Outcome:
     events: list[tuple[int, Any]] = field(default_factory=list)
 
 
+def shown(value: object) -> str:
+    """Return the `repr` of a value without addresses, which differ between two runs."""
+    return re.sub(" at 0x[0-9a-f]+", "", repr(value))
+
+
 def everywhere(tree: ast.Module) -> dict[Offset, int]:
     """Make every statement, lambda body, handler and case a site; its number is its line."""
     found = {}
@@ -80,7 +85,7 @@ def run(
         outcome.error = "".join(traceback.format_exception(type(error), error, inside))
     finally:
         sys.settrace(before)
-    outcome.values = {n: repr(v) for n, v in space.items() if not n.startswith("__") and not callable(v)}
+    outcome.values = {n: shown(v) for n, v in space.items() if not n.startswith("__") and not callable(v)}
     outcome.events = list(zip(buffer[0::2], buffer[1::2], strict=True))
     return outcome
 
@@ -97,7 +102,5 @@ def assert_same(source: str, *, trace: bool) -> None:
         watched = run(source, everywhere(ast.parse(source)), inline=inline, trace=trace)
         assert (watched.values, watched.error) == (plain.values, plain.error)
         assert watched.lines == plain.lines
-        seen.append(
-            [(number, re.sub(" at 0x[0-9a-f]+", "", repr(value))) for number, value in watched.events]
-        )
+        seen.append([(number, shown(value)) for number, value in watched.events])
     assert seen[0] == seen[1]

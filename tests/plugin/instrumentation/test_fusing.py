@@ -6,7 +6,7 @@ import ast
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.instrumentation.constants import bound
@@ -172,6 +172,7 @@ ARGUMENTS = st.sampled_from(["1.0", "-2.5", "0.0", "3", "None", "1e308", "Odd(2.
 
 @settings(max_examples=150 if SLOW else 60, suppress_health_check=list(HealthCheck))
 @given(st.lists(LINES, min_size=3, max_size=9), ARGUMENTS, ARGUMENTS)
+@example(["g(x)", "x = x", "g(x)"], "1.0", "Wraps()")
 def test_generated_arithmetic_behaves_the_same(lines, first, second):
     body = "\n".join(f"    {line}" for line in lines)
     program = f"def f(self, x, y):\n{body}\n    return x, y\nf.k = 0.5\ng = out.append\n"

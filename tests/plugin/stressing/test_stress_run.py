@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 from math import sqrt
+from statistics import NormalDist
 
 import jsonschema
 import numpy as np
@@ -60,7 +61,9 @@ def test_the_boundary_of_failed_missions_is_found(edge: float, seed: int) -> Non
     found = stressed(world, space_of(mud=MUD), seed=seed)
     boundary = found.curves[0].boundary
     assert boundary is not None
-    assert found.curves[0].ray.value(boundary.at) == pytest.approx(edge, abs=0.03)
+    # the guarantee allows 5 % of failed missions
+    allowed = edge + NormalDist(0.0, 0.01).inv_cdf(0.95)
+    assert found.curves[0].ray.value(boundary.at) == pytest.approx(allowed, abs=0.03)
 
 
 def test_both_ends_of_a_range_have_separate_boundaries() -> None:
