@@ -67,6 +67,11 @@ def chatter(pairs: Sequence[Pair]) -> float:
     return _more(pairs, lambda series: _switches(series.values > middle), SWITCHES)
 
 
+def hunting(pairs: Sequence[Pair]) -> float:
+    """Return how much more often the values change their sign, as an error does that a controller cannot settle."""
+    return _more(pairs, lambda series: _switches(series.values > 0.0), SWITCHES)
+
+
 def jumps(pairs: Sequence[Pair]) -> float:
     """Return how much likelier losses become soon after a jump of the value.
 
@@ -147,6 +152,7 @@ def lag(pairs: Sequence[Pair]) -> float:
 
 SYMPTOMS: Mapping[str, Symptom] = {
     "chatter": chatter,
+    "hunting": hunting,
     "jumps": jumps,
     "lag": lag,
     "noise": noise,

@@ -134,7 +134,9 @@ def test_the_number_of_changes_is_limited(tmp_path: Path) -> None:
 def test_a_template_with_an_unknown_symptom_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "odd.toml"
     path.write_text('summary = "x"\non = "value"\ncost = 1\nexpression = "-{x}"\nsymptoms = ["fever"]\n')
-    with pytest.raises(SettingsError, match=r"the symptom 'fever' is unknown; known are chatter, jumps"):
+    with pytest.raises(
+        SettingsError, match=r"the symptom 'fever' is unknown; known are chatter, hunting, jumps"
+    ):
         template(path)
 
 
