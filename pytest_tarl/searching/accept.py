@@ -53,13 +53,13 @@ class Outcome:
     failure: str = field(default="", compare=False)
 
     def acts_like(self, other: Outcome) -> bool:
-        """Return whether two episodes of one seed are equal, also in the nodes' known messages."""
+        """Return whether two episodes of one seed have equal outcomes and, as far as known, equal messages."""
         return self == other and self.outputs == other.outputs
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The recorded missions of the designed world, with which repairs are compared.
+    """The recorded missions of the designed world. Repairs are compared with them.
 
     `margin` is δ in reward per episode. `lowest` and `highest` are the declared bounds of a mission's total reward in
     both worlds.
@@ -83,13 +83,13 @@ class Reference:
 
     @property
     def least(self) -> float:
-        """Return the lowest difference that may be counted between a mission and its designed counterpart.
+        """Return the lower limit for the difference in reward between a mission and its designed counterpart.
 
-        Lower differences are clipped to it. It is the lowest difference that the declared limits and the recorded
-        totals allow, but at least -20 margins. With a margin of 5 % of the designed reward, 20 margins are the whole
-        reward of a designed mission. Failures can be clipped because a separate test counts them. Without the clip,
-        correct repairs would be refused: after one costly failure, a test of 200 episodes could no longer show that the
-        loss is small.
+        The test clips lower differences to this limit. The limit is the lowest difference that the declared bounds and
+        the recorded totals allow, but at least -20 margins. With a margin of 5 % of the designed reward, 20 margins are
+        the whole reward of a designed mission. Failures can be clipped because a separate test counts them. Without the
+        clip, correct repairs would be refused: after one costly failure, a test of 200 episodes could no longer show
+        that the loss is small.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
@@ -101,7 +101,7 @@ def unforeseen(wanted: Sequence[object]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A program in a world, called with seeds to run; `foresee` receives the seeds needed next."""
+    """A program in a world. `run` runs the mission of one seed; `foresee` receives the seeds that are needed next."""
 
     run: Callable[[int], Outcome]
     foresee: Callable[[Sequence[int]], None] = unforeseen
@@ -109,7 +109,7 @@ class World:
 
 @dataclass
 class Designed:
-    """The unrepaired program in the designed world, which runs each seed once."""
+    """The unrepaired program in the designed world. Each seed runs only once."""
 
     world: World
     known: dict[int, Outcome] = field(default_factory=dict)
@@ -133,7 +133,7 @@ class Acceptance:
     - `bets`: the sizes of the bets in the two worlds.
     - `seeds`: the seeds of the drifted episodes; `designed`: the unrepaired program's totals on them in the designed
       world.
-    - `costly`: whether the candidate was refused for its reward in the designed world.
+    - `costly`: whether the candidate was refused because of its episodes in the designed world.
     """
 
     accepted: bool
@@ -237,7 +237,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Return whether enough of the missions so far pass and they lose at most the margin."""
+        """Return whether enough missions have passed so far and the test shows that they lose at most the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:

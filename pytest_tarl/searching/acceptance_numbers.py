@@ -15,7 +15,7 @@ from math import comb, sqrt
 
 import numpy as np
 
-NEVER = -1  # with this number of missions, no candidate can be accepted, not even without a failure
+NEVER = -1  # acceptance number of a look that cannot accept any candidate, not even one without failures
 
 
 @lru_cache(maxsize=64)

@@ -1,4 +1,4 @@
-"""Find out whether a change alters what the nodes publish, if missions still earn the same and fail as early.
+"""Find out whether a change alters what the nodes publish, even if missions earn the same and last as long as before.
 
 For example, the pulley of a watering gantry was replaced, and the gantry waters the wrong place. With any wrong number
 of teeth, the mission fails after the same time and with the same reward. So neither time nor reward shows that the
@@ -11,7 +11,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.units import Unit
 
 SEEDS = 4  # number of seeds on which the messages of the changed and the unchanged program are compared
-CHANGES = 8  # number of changes of a unit for which the messages are compared
+CHANGES = 8  # maximum number of changes of a unit whose messages are compared
 
 
 class Acting:
@@ -29,7 +29,7 @@ class Acting:
         self._usual: dict[int, object] = {}
 
     def ran(self, unit: Unit, candidate: Candidate) -> None:
-        """Store that a change of a unit ran."""
+        """Store a change of a unit that has run."""
         self._ran.setdefault(unit, []).append(candidate)
 
     def __call__(self, unit: Unit) -> bool:

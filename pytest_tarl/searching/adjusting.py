@@ -1,4 +1,4 @@
-"""Adjust the best constant of a sweep, by factors between its best factor and the neighbours."""
+"""Refine the best constant of a sweep: try factors between its best factor and the factors next to it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ REFINED = 8  # maximum number of runs that refine one operand
 IDLE = 2
 # a named constant whose gain has a sharp peak is refined if the two factors beside the peak have at least this ratio
 WIDE = 1.4
-AMID = 6  # maximum number of constants that are tried in one go with a value between two steps
+AMID = 6  # maximum number of constants for which one call of `amid` tries a value between two steps
 # when gains are compared, a unit's gain is multiplied by this factor once for each refinement without progress
 GIVES_WAY = 0.75
 MORE = 0.05  # minimum increase of the gain that counts as progress, as a share of the wanted gain
@@ -45,7 +45,7 @@ class Search(Protocol):
 
     @property
     def pair(self) -> int:
-        """Return the index of the mission pair whose seed is used in the present turn."""
+        """Return the index of the mission pair whose seed is used in the current turn."""
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
         """Try one factor on a unit under a guard; yield the candidates that further seeds confirm."""
@@ -109,14 +109,14 @@ class Adjusting:
         ]
 
     def _in_a_wide_bracket(self, key: tuple[Unit, Guard]) -> bool:
-        """Return whether a named constant's gain has a sharp peak with room beside it."""
+        """Return whether a named constant's gain has a sharp peak between two factors that are far apart."""
         named = kind(key[0]) is Oddness.NAMED and not self.search.proposed
         return named and bracket(self.search.gains.of(*key)) >= WIDE
 
     def amid(self, guard: Guard) -> Iterator[Candidate]:
-        """For each constant, try a value between a too small and a too large step.
+        """For each constant, try a value between a step that is too small and the next step, which is too large.
 
-        A step is too little if it earns about as much as the old value. It is too much if it clearly loses reward.
+        A step is too small if it earns about as much as the old value. It is too large if it clearly loses reward.
         """
         search = self.search
         found = [
@@ -170,5 +170,5 @@ class Adjusting:
 
 
 def _most(unit: Unit) -> int:
-    """Return how many refining runs a unit may have: `REFINED`; half for an offset of zero."""
+    """Return how many refining runs a unit may have: `REFINED`, or half as many for an offset on a literal 0."""
     return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED

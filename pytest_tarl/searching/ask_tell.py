@@ -27,13 +27,13 @@ from pytest_tarl.searching.search import (
 from tarl_lint.model import Operand
 
 UNMOVED = 0.02  # a factor that differs from 1 by at most this amount leaves the constant unchanged
-MOST_IDLE = 200  # number of consecutive proposals without a new episode after which the search ends
+MOST_IDLE = 200  # the search ends after this number of consecutive proposals without a new episode
 MOST_AT_ONCE = 1000
 
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A use of a constant for the optimiser; `value` is None if known only at run time."""
+    """A use of a constant for the optimiser; `value` is None if it is known only at run time."""
 
     path: str
     line: int
@@ -183,7 +183,7 @@ class Asking:
     def _gained(self, candidate: Candidate, pair: Pair) -> tuple[float, bool]:
         """Run a candidate; return its gain and whether it reached the goal.
 
-        If the candidate cannot be written into the source, it counts with the total reward of the worst episode.
+        A candidate that cannot be written into the source gets the total reward of the worst episode.
         """
         if not candidate.mutations:
             return 0.0, False

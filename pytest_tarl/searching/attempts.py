@@ -47,7 +47,7 @@ EASY = 3
 PARTLY = 0.3
 # a constant is adjusted in small steps only if the two tried values beside its best value have at most this ratio
 NARROW = 1.6
-# this limit holds instead if both values earn nearly as much, because the constant then gets no larger steps
+# the limit used instead of `NARROW` if both values earn nearly as much, because the constant then gets no larger steps
 CLOSE = 1.21
 LOST = 0.5  # a mission pair can be easy only if its loss is at least this share of the wanted gain
 
@@ -55,8 +55,9 @@ LOST = 0.5  # a mission pair can be easy only if its loss is at least this share
 class Attempts:
     """The changes that one search has tried, and the gains of its units; see `Sweep` for the arguments.
 
-    `parts` maps a constant to its uses. In each turn, the changes of a step run on the seed of another pair. While
-    nothing gains, these are easy pairs, whose missions lost least: there the range of good values is widest.
+    `parts` maps a constant to its uses. All changes of one step run on the seed of one pair, and the next step uses the
+    next pair. Until a change gains, only easy pairs are used, that is, pairs whose missions lost least. On these pairs,
+    the range of good values is widest.
     """
 
     def __init__(
@@ -134,7 +135,7 @@ class Attempts:
 
     @property
     def pair(self) -> int:
-        """Return the index of the mission pair whose seed is used in the present turn.
+        """Return the index of the mission pair whose seed is used in the current turn.
 
         While nothing gains, changes of constants run on the seeds that lost least. Structural changes run on all seeds.
         On easy seeds, a value that is only nearly right earns enough, so the search might refine the wrong change.
@@ -235,10 +236,11 @@ class Attempts:
     def _nearly(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
         """If a change passes its missions and earns nearly enough, adjust its value before other changes are tried.
 
-        Such a change is of the right kind, only its value is inexact. A constant is adjusted in such small steps in two
-        cases. In the first case, both neighbouring values are close and earn much less. In the second case, they are so
-        close that `adjusting` tries no value between them. In all other cases the larger steps of `adjusting` are
-        better.
+        Such a change is of the right kind, but its value is inexact. A constant is adjusted in small steps only in two
+        cases, because otherwise the larger steps of `adjusting` are better:
+
+        - Both neighbouring values are close and earn much less.
+        - Both neighbouring values are so close that `adjusting` tries no value between them.
         """
         goal, key = self.goal, (unit, candidate.guard)
         ran, totals = self.trials.ran(candidate, goal.pairs), self.trials.totals_of(candidate, goal.pairs)
@@ -263,7 +265,7 @@ class Attempts:
             yield from self.attempt(unit, candidate.guard, better, pair)
 
     def _following(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
-        """If a constant needs different values in different missions, once let it follow a quantity that varies."""
+        """If a constant needs different values in different missions, let it follow a varying quantity (tried once)."""
         guard, gains = candidate.guard, self.gains.of(unit, candidate.guard)
         if self.proposed or unit in self._divided or factor <= 0.0:
             return
@@ -285,7 +287,7 @@ class Attempts:
         self._acting.ran(unit, candidate)
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor on a unit; return the candidate if it is new and confirmed, else None."""
+        """Try a factor on a unit. Return the candidate if it was not tried before and is confirmed, else None."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
             return None
@@ -300,7 +302,7 @@ class Attempts:
         return candidate if holds else None
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
-        """Return whether a factor that is new reaches the goal on a pair's seed."""
+        """Try a factor on a pair's seed and return whether it reaches the goal. Return False if it was tried before."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
             return False
@@ -312,7 +314,7 @@ class Attempts:
         return bool(near)
 
     def ran_on(self, unit: Unit, guard: Guard, factor: float) -> int:
-        """Return the index of the pair on whose seed a change ran first, else of the present turn."""
+        """Return the index of the pair on whose seed a change ran first; if it never ran, the current turn's pair."""
         return self._ran_on.get((unit, guard, factor), self.pair)
 
     def expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
@@ -349,7 +351,7 @@ class Attempts:
         )
 
     def _alone(self, candidate: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """Yield the changes that are preferred to a single change from a combination."""
+        """Yield the changes that are preferred to a single change that is left of a combination."""
         self._tried.add(candidate)
         self._learn(unit, candidate, factor)
         yield from self.preferences.before(candidate, unit, factor, 0, True, True)

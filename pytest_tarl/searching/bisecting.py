@@ -27,16 +27,16 @@ class Search(Protocol):
     gains: Gains
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor on a unit; return the candidate if it is new and confirmed."""
+        """Try a factor on a unit. Return the candidate if it was not tried before and is confirmed."""
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a factor that is new reaches the goal on the seed of a mission pair."""
+        """Try a factor on a mission pair's seed and return whether it reaches the goal (False if tried before)."""
 
 
 def bisected(
     search: Search, unit: Unit, factor: float, guard: Guard, pair: int
 ) -> tuple[Unit, float, Candidate] | None:
-    """Return a confirmed value that is nearer to the old one, as unit, factor and candidate, or None.
+    """Look for a confirmed value nearer to the old one. Return its unit, factor and candidate, or None.
 
     `factor` is a confirmed step of the unit. Values are compared by their ratio, even if the step belongs to another
     scale (a chart).

@@ -1,7 +1,7 @@
 """Replace a change of a function's return value by changes at the calls that need it.
 
 A getter such as `def p(self, name): return self.get_parameter(name).value` returns many constants. A factor on the
-return value changes all these constants, but a maintainer would change only the wrong ones.
+return value changes all these constants, but a maintainer would change only those that are wrong.
 """
 
 from __future__ import annotations

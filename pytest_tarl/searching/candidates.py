@@ -32,7 +32,7 @@ Bins = tuple[int, int]  # first and last bin, both included
 
 @dataclass(frozen=True)
 class Evidence:
-    """Data for guards: samples of both worlds, the region of change, and each cell's change."""
+    """The data from which guards are proposed: samples of both worlds, the region of change, and each cell's change."""
 
     sensors: Sequence[Sensor]
     offline: Sample
@@ -79,13 +79,15 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 
 
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
-    """Return the guards to search under: `ALWAYS`, and at most `most` guards that hold mainly where much changed.
+    """Return at most `most` guards to search under: `ALWAYS`, and guards that hold mainly where much changed.
 
     A guard's merit is the share of the change where it holds minus the share of designed steps where it holds (Youden's
     J). A guard that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually
-    comes second. It comes first in two cases. In the first case, no guard has much merit, so the drift seems to be
-    everywhere. In the second case, the best guard holds wherever the drifted robot went, so it says nothing about
-    places that only a repaired robot reaches.
+    comes second. It comes first in two cases:
+
+    - No guard has much merit, so the drift seems to be everywhere.
+    - The best guard holds wherever the drifted robot went, so it says nothing about places that only a repaired robot
+      reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 

@@ -27,12 +27,16 @@ RIVALS = 8  # maximum number of episodes for trying rival constants
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
-    """Yield the other named constants of the function that contains `found`, each with `1 / factor` and `factor`.
+    """Yield other named constants that may be the cause (rivals), each with factors to try.
 
-    The reciprocal suits constants that are divisors. Constants that gained are then yielded again, with weaker factors.
-    Constants that never changed a mission are left out, and so are constants on another scale than `found`, for which
-    the factor has no meaning. Constants of other functions in the file may be the cause, too. If they gained reward,
-    they come first, with a factor in the direction that gained.
+    - First come constants of other functions in the file that gained reward, with a factor in the direction that
+      gained.
+    - Then come the other constants of the function that contains `found`, each with `1 / factor` and `factor`. The
+      reciprocal suits divisors.
+    - Those of them that gained come again, with weaker factors.
+
+    Constants that never changed a mission are left out. Constants on another scale than `found` are left out, too,
+    because the factor has no meaning for them.
     """
     at = found.operands[0].site
     tried = gains.under(guard)

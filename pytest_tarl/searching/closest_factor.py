@@ -47,7 +47,7 @@ def _approach(start: float, better: float, at: Callable[[float], float]) -> None
 
 
 def _between(one: float, other: float, at: Callable[[float], float]) -> float:
-    """Return the minimum between two exponents, if the deviation falls equally fast on both sides."""
+    """Return where the minimum between two exponents lies if the deviation falls equally fast on both sides."""
     whole = at(one) + at(other)
     share = at(one) / whole if 0.0 < whole < inf else 0.5
     found = one + (other - one) * share

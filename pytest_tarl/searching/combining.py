@@ -107,7 +107,7 @@ class Combining:
             yield from search.joining({}).unions([part for _, part in leaders], guard, hidden)
 
     def held(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """For each guard, once apply the best unit's change and try the other named constants together with it.
+        """For each guard, try the other named constants together with the best unit's change. This is done once.
 
         Constants that changed missions when they were tried alone come first.
         """
@@ -143,7 +143,7 @@ class Combining:
                 yield from self.search.joining({}).sharpened(unit, factor, guard)
 
     def unmasked(self, guard: Guard) -> Iterator[Candidate]:
-        """If missions last longer with the best unit's change, retry the units without an effect together with it."""
+        """If missions last longer with the best unit's change, combine it with each unit that had no effect alone."""
         search = self.search
         leaders = search.gains.leaders(guard)
         if search.proposed or not leaders or leaders[0][0] < GAINED * search.goal.wanted:

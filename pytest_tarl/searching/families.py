@@ -1,4 +1,4 @@
-"""Group constants that stand for the same quantity of several axes, sides or joints.
+"""Group constants that describe the same quantity for several axes, sides or joints.
 
 For example, a drone has one stiffness for each axis. If the wind blows in all directions, it does not help to change
 the stiffness of one axis only. Constants form a family if their values are similar and if one of two things is true:

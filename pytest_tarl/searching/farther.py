@@ -37,7 +37,7 @@ class Search(Protocol):
 
     @property
     def pair(self) -> int:
-        """Return the index of the mission pair whose seed is used in the present turn."""
+        """Return the index of the mission pair whose seed is used in the current turn."""
 
     def each(self, factor: float, guard: Guard, among: Sequence[Unit], pair: int) -> Iterator[Candidate]:
         """Try one factor on several operands, on the seed of a pair."""
@@ -61,9 +61,11 @@ def farther(search: Search) -> Iterator[Candidate]:
 def _open(search: Search, guard: Guard, before: float) -> list[Unit]:
     """Return the constants that neither gained clearly nor lost more than `BEARABLE` so far, best first.
 
-    What counts is the gain with `before`, the smaller step. Constants that gained clearly are left out because refining
-    moves them as far. Constants on which the smaller step had no effect are also left out: an example is a limit that
-    is not reached. If a constant has several uses, its single uses are left out, too.
+    Gains are those with `before`, the smaller step. The following constants are left out:
+
+    - constants that gained clearly, because refining moves them as far
+    - constants on which the smaller step had no effect, such as a limit that is never reached
+    - the single uses of a constant that has several uses
     """
     gains = search.gains
     whole = [unit for unit in named(search.units) if not any(_part_of(unit, one) for one in search.units)]

@@ -26,7 +26,7 @@ from tarl_lint.model import Operand
 
 # number of best units that are tried with larger steps before the next guard is tried
 LEADING = 3
-# the `LEADING` units must gain at least this share of the wanted gain, and so must units that get a smaller step
+# minimum gain of units that get larger steps (`LEADING`) or an even smaller step, as a share of the wanted gain
 HINT = 0.005
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
@@ -182,7 +182,7 @@ class FirstSteps:
         return most > HINT * self.attempts.goal.wanted and gains.get(factor) == most
 
     def _laws(self, guard: Guard) -> Iterator[Candidate]:
-        """If nothing gained, once let named constants that lost in both directions follow a quantity that varies."""
+        """If nothing gained, let named constants that lost in both directions follow a varying quantity (once only)."""
         tries, gains = self.attempts, self.attempts.gains
         lost = gains.clearly_lost(guard, named(tries.units), NEAR)
         if not self._lawful and lost and not gains.anything():
@@ -190,9 +190,9 @@ class FirstSteps:
             yield from laws(lost, tries.suggestions.proportional, tries.joining({}))
 
     def _limits(self, guard: Guard) -> Iterator[Candidate]:
-        """Once, relax the limits that missions reach, alone and together with changes that made missions longest.
+        """Relax the limits that missions reach, alone and together with the changes that made missions longest.
 
-        Corrections of wrong readings are tried first.
+        This is done once. Corrections of wrong readings are tried first.
         """
         if self._limited:
             return
@@ -242,7 +242,7 @@ class FirstSteps:
             yield from tries.adjusting.refine(tries.pair)
 
     def _uses_apart(self, guard: Guard, block: Sequence[Unit]) -> Iterator[Candidate]:
-        """Change a constant at only one of its uses, because effects of several may cancel.
+        """Change a constant at only one of its uses, because the effects at several uses may cancel each other out.
 
         Each use runs on the seed on which the constant was changed everywhere. This shows whether both changes have the
         same effect.
@@ -307,7 +307,7 @@ class FirstSteps:
             before = steps
 
     def _few(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the constants that lose with all steps: the named ones, or else the others if few."""
+        """Return the named constants that lose with all steps. If there are none, return the others if they are few."""
         lost = self.attempts.gains.clearly_lost(guard, among, FINER)
         lost = [unit for unit in lost if unit.chart is None and kind(unit) < Oddness.OFFSET]
         return named(lost) or (lost if len(lost) <= FEW else [])

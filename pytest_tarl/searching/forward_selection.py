@@ -1,4 +1,4 @@
-"""Combined repairs by greedy forward selection: add units to the best one up to the goal.
+"""Combined repairs by greedy forward selection: add units to the best one until the goal is reached.
 
 A part of a combination is a unit with its factor. Units are chosen by the gain that each has alone, as in matching
 pursuit. After each step, the factors of all parts are balanced: each one is adjusted to the others. Parts that are not
@@ -168,7 +168,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units without an effect alone to a good pair, since missions may now last longer."""
+        """Add units that had no effect alone to a good pair: they may matter now, because missions last longer."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():
@@ -293,10 +293,10 @@ class ForwardSelection:
             yield candidate
 
     def sharper(self, unit: Unit, factor: float, guard: Guard, steps: Sequence[float] = SHARP_STEPS) -> float:
-        """Return a good single unit's factor, adjusted on the seeds where it earns least.
+        """Adjust the factor of a good single unit on the seeds on which it earns least; return the factor.
 
-        A failed mission counts with its reward here, although it does not in a combination: near a narrow range of good
-        values, some missions fail.
+        Near a narrow range of good values, some missions fail. Here, unlike in a combination, failed missions therefore
+        count with their reward.
         """
         base = Joint(((unit, factor),), guard)
         begin, pairs = base.candidate(self.mutate), self.goal.pairs
@@ -316,7 +316,7 @@ class ForwardSelection:
         return better
 
     def _with_another(self, base: Joint, turn: int) -> Iterator[Joint]:
-        """Yield combinations with one more part, which first has the better of its near factors."""
+        """Yield combinations with one more part. Turn 0 uses its better factor of `NEAR`, turn 1 the other one."""
         taken = {unit for unit, _ in base.parts}
         for unit in self.units:
             ranked = sorted(NEAR, key=lambda factor: self._progress(unit, factor, base.guard), reverse=True)

@@ -131,7 +131,7 @@ class Gains:
         ]
 
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units without those that use an earlier unit's constant to the same effect.
+        """Return the units, except those that change the constant of an earlier unit with the same effect.
 
         For example, a constant that is passed to a function is used both in the call and in the function. Two units
         count as equal if they share a definition, at least two factors were tried on both, and the gains of all these

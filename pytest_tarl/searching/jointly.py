@@ -233,7 +233,7 @@ def _best_apart(points: Floats, values: Floats) -> Floats:
 
 
 def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
-    """Return the units to move jointly. The last ones are hidden (see HIDDEN); return also their number.
+    """Return the units to move jointly, and how many of them are hidden (see `HIDDEN`). Hidden units come last.
 
     Each constant moves on the scale on which it gained most. Named constants come first. Among constants of the same
     kind, those that changed the reward more come first. Booleans, zeros and constants of nature are left out.

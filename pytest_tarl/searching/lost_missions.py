@@ -4,8 +4,9 @@ On easy missions, many values earn enough, so these missions do not show in whic
 missions in which rejected changes lost reward (lost missions) do show the direction: the next value is one with which
 the first of these missions earns more.
 
-If a node looks at the time twice a second, all waiting times from 0.51 to 1 s act alike. Such values form a plateau:
-with each of them, the lost mission is exactly the same. The search then steps on until it has left the plateau.
+If a node looks at the time twice a second, all waiting times from 0.51 to 1 s have the same effect. Such values form a
+plateau: with each of them, the lost mission is exactly the same. The search then makes further steps until it has left
+the plateau.
 """
 
 from __future__ import annotations
@@ -68,9 +69,10 @@ class _Mission:
 
 
 def _directions(factor: float, tried: Collection[float]) -> list[bool]:
-    """Return whether each direction is upwards, away from 1 first, without those too close.
+    """Return the directions to try (True means upwards), with the one away from 1 first.
 
-    If no factor was tried in a direction, the nearest one is `OUTWARD` times larger or smaller.
+    A direction is left out if its nearest tried factor is too close. If no factor was tried in a direction, the nearest
+    one counts as `OUTWARD` times larger or smaller.
     """
     below, above = beside(factor, tried, OUTWARD)
     apart = {True: above / factor, False: factor / below}

@@ -24,7 +24,7 @@ MOVED = 2  # maximum number of combinations whose added constant is moved furthe
 
 
 def held(base: Joint, rest: Sequence[Unit], selection: ForwardSelection) -> Iterator[tuple[Joint, Outcome]]:
-    """Add one constant of `rest` to a change, on the mission that it restores least; yield what earns more.
+    """Add one constant of `rest` to a change, on the mission that the change restores least; yield what earns more.
 
     Each constant is increased, then decreased. Then the best constants are moved further. This is done for several
     constants, because the constant that is best after a large step need not be best with a suitable value. Nothing runs

@@ -158,7 +158,7 @@ def kind(unit: Unit) -> Oddness:
 
 
 def _lines_after(unit: Unit, beside: Unit | None) -> float:
-    """Count the lines from `beside` down to the unit: -1 in one statement, infinite if above."""
+    """Count the lines from `beside` down to the unit; -1 in the same statement, infinite if the unit is above."""
     if beside is None:
         return inf
     one, other = unit.operands[0], beside.operands[0]

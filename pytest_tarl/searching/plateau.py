@@ -1,4 +1,4 @@
-"""Steps to try on a plateau: no change gains reward, or a large change gains most, as failing missions earn the same.
+"""Steps to try on a plateau: failing missions earn the same, so no change gains reward, or a large change gains most.
 
 Without a gradient, the search has to hit the range of good values by trial. Most constants are wrong by a factor of
 less than two, and good ranges are often narrow. Therefore, finer and finer steps between the first two steps (2.2 and

@@ -89,7 +89,7 @@ class _Ascent:
         return best, most
 
     def onwards(self, base: Factors, best: Factors, most: float) -> tuple[Factors, float]:
-        """Repeat the move from `base` to `best` while the mean total grows noticeably, if it moved several factors."""
+        """If `best` differs from `base` in several factors, repeat this move while the mean total grows noticeably."""
         ratios = [new / old if old else 1.0 for old, new in zip(base, best, strict=True)]
         if sum(ratio != 1.0 for ratio in ratios) < 2:
             return best, most
@@ -102,7 +102,7 @@ class _Ascent:
         return best, most
 
     def mean(self, factors: Factors, most: float) -> float | None:
-        """Return the mean total; None if factors are rejected or at first earn clearly below `most`."""
+        """Return the mean total, or None if the factors are rejected or soon earn clearly less than `most`."""
         if factors not in self._means:
             self._means[factors] = self._run(factors, most)
         return self._means[factors]

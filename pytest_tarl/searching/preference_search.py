@@ -1,4 +1,4 @@
-"""The interface of a search, as far as the search for preferred changes uses it."""
+"""The part of a search's interface that the search for preferred changes uses."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Search(Protocol):
         """Try factors between the best factor of a unit and the factors next to it."""
 
     def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor on a unit; return the candidate if it is new and confirmed."""
+        """Try a factor on a unit. Return the candidate if it was not tried before and is confirmed."""
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a factor that is new reaches the goal on the seed of a mission pair."""
+        """Try a factor on a mission pair's seed and return whether it reaches the goal (False if tried before)."""
 
     def corrections(self) -> Iterator[Candidate]:
         """Yield confirmed corrections of sensor readings that are wrong from the start. Later calls yield nothing."""

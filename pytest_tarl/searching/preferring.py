@@ -42,7 +42,7 @@ from pytest_tarl.searching.smaller import (
 )
 from pytest_tarl.searching.units import NEAR, Unit, change_size
 
-PLAINER_ROUNDS = 2  # how often each constant whose change a maintainer would prefer is refined
+PLAINER_ROUNDS = 2  # maximum number of refinements of each constant whose change a maintainer would prefer
 FUNCTIONS = 2  # maximum number of functions whose constants are compared by how their missions proceed
 UNUSUAL = 6  # number of episodes for trying other constants if a change leads to unusual commands
 PLAINER = 12  # maximum number of episodes for constants whose change a maintainer would prefer
@@ -250,7 +250,7 @@ class Preferences:
             self._aside.append((other, candidate))
 
     def _promises(self, unit: Unit, factor: float, guard: Guard, pair: int) -> bool:
-        """Return whether a factor reaches the goal on a pair's seed, or gains nearly enough."""
+        """Return whether a factor reaches the goal on a pair's seed, or gains at least `PROMISING`."""
         if self.search.reaches(unit, factor, guard, pair):
             return True
         gain = self.search.gains.of(unit, guard).get(factor, 0.0)
@@ -270,7 +270,7 @@ class Preferences:
         return next((one for one in tried if one is not None), None)
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a much smaller change of another constant first if missions deviate no more from the designed ones."""
+        """Yield a much smaller change of another constant first, if its missions are as close to the designed ones."""
         if (
             self._reduced
             or self.search.proposed

@@ -22,7 +22,7 @@ SHARP = 0.5  # a peak is sharp if each neighbouring factor gains at most this sh
 
 
 def bracket(by_factor: Mapping[float, float]) -> float:
-    """Return the ratio of the factors beside a sharp peak (see `SHARP`), or 1 without one."""
+    """Return the ratio of the two factors beside a sharp peak (see `SHARP`), or 1 if there is no sharp peak."""
     beside = _beside_peak(by_factor)
     if beside is None:
         return 1.0
@@ -32,13 +32,13 @@ def bracket(by_factor: Mapping[float, float]) -> float:
 
 
 def between_neighbours(by_factor: Mapping[float, float]) -> float:
-    """Return the ratio of the factors beside the best; 1 without two or without a gain."""
+    """Return the ratio of the two factors beside the best one, or 1 if one is missing or nothing gains."""
     beside = _beside_peak(by_factor)
     return beside[1] / beside[0] if beside is not None else 1.0
 
 
 def _beside_peak(by_factor: Mapping[float, float]) -> tuple[float, float] | None:
-    """Return the two factors beside the best factor; None without two or without a gain."""
+    """Return the two factors beside the best factor, or None if one is missing or nothing gains."""
     factor = max(by_factor, key=by_factor.__getitem__)
     below, above = beside(factor, by_factor) if factor > 0.0 else (0.0, inf)
     return (below, above) if below > 0.0 and above < inf and by_factor[factor] > 0.0 else None
@@ -55,10 +55,10 @@ def beside(factor: float, tried: Iterable[float], outward: float = inf) -> tuple
 
 
 def amid(by_factor: Mapping[float, float], slack: float) -> list[float]:
-    """For two neighbouring factors of which the inner gains nothing and the outer loses, return one in between.
+    """Return a factor between each two neighbours of which the inner one gains nothing and the outer one loses.
 
-    This is done for all such neighbours. The old value does not count as a neighbour. Factors with a ratio of less than
-    `APART` are left out, because the first steps already lie between them.
+    The inner factor is the one nearer to 1, the old value. The old value itself does not count as a neighbour.
+    Neighbours with a ratio below `APART` are skipped, because the first steps already lie between them.
     """
     found = []
     for outward in (

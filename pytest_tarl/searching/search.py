@@ -192,7 +192,7 @@ class Trials:
         self._known = {**other._known, **self._known}
 
     def equate(self, candidate: Candidate, other: Candidate) -> None:
-        """Use the outcomes of `candidate` for `other`, which acts alike, unless `other` has run itself."""
+        """Use the outcomes of `candidate` for `other`, which has the same effect, unless `other` has run itself."""
         for (one, seed), outcome in list(self._known.items()):
             if one == candidate:
                 self._known.setdefault((other, seed), outcome)
@@ -307,7 +307,7 @@ class Trials:
         return [one.steps for one in known if one is not None and one.steps is not None]
 
     def same_as(self, candidate: Candidate, other: Candidate) -> int:
-        """Return the number of two candidates' common seeds if all outcomes are equal, else 0."""
+        """Return on how many common seeds two candidates ran if all their outcomes there are equal, else 0."""
         mine, its = self._outcomes(candidate), self._outcomes(other)
         both = mine.keys() & its.keys()
         return len(both) if all(mine[seed] == its[seed] for seed in both) else 0
@@ -349,7 +349,7 @@ class Trials:
         return False
 
     def reason(self, pair: Pair) -> str:
-        """Return why the unchanged program fails on a pair's seed, as an ineffective change shows.
+        """Return why the unchanged program fails on a pair's seed. The reason is taken from a change without effect.
 
         Return "" if no such change has run, or if the mission does not fail.
         """

@@ -19,7 +19,7 @@ Hint = tuple[tuple[Operand, float], ...]  # constants that change together, each
 class Suggestions:
     """Functions that a sweep calls for suggestions. By default, there are none.
 
-    - `interlude` takes the largest gain so far; it may yield candidates of another search. It is called before each
+    - `interlude` takes the largest gain so far and may yield candidates of another search. It is called before each
       step and each long phase.
     - `due` takes the largest gain so far. It returns whether `interlude` would now begin the structural changes.
     - `corrections` yields confirmed corrections of sensor readings. It is called before extreme changes.

@@ -159,7 +159,7 @@ class Sweep:
         return self.brief and not tries.gains.anything(BRIEFLY * tries.goal.wanted)
 
     def _before_screening(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """If there are few named constants, try them first: a maintainer is likelier to change them than a literal.
+        """If there are few named constants, try them first: a maintainer would rather change them than a literal.
 
         While all failing missions earn the same, a screening learns nothing. Finer steps on a few named constants then
         cost less than first steps on many literals.

@@ -96,7 +96,7 @@ def whole_constants(apart: Sequence[Unit], scope: Scope = everywhere) -> tuple[U
 def uses_apart(
     plain: Sequence[Unit], others: Sequence[Unit], scope: Scope = everywhere
 ) -> tuple[tuple[Unit, ...], dict[Unit, tuple[Unit, ...]]]:
-    """Unite all uses of each constant in `plain`; return all units, and the uses that each replaces.
+    """Make one unit of all uses of each constant in `plain`. Return all units, and the uses that each unit replaces.
 
     If several statements use a constant, a maintainer would change it everywhere. Uses in `others` are not searched by
     themselves, but they change together with those in `plain`. The unit takes the place of its first use.
@@ -159,7 +159,7 @@ def best_effects(
 def _alone(
     operand: Operand, unit: Unit, factor: float, gained: Sequence[tuple[Unit, Mapping[float, float]]]
 ) -> float | None:
-    """Return an operand's own gain, if small and another one may bring the unit's gain."""
+    """Return an operand's own gain if it is small and another operand may bring the unit's gain, else None."""
     if len(unit.operands) < 2:
         return None
     alone: dict[Operand, float] = {}

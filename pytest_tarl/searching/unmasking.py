@@ -43,8 +43,8 @@ def lasting(base: Joint, selection: ForwardSelection) -> float:
 def unmasked(base: Joint, hidden: Sequence[Unit], selection: ForwardSelection) -> Iterator[Candidate]:
     """Yield confirmed combinations of `base` and one of the `hidden` units. Raise BudgetSpentError.
 
-    Each unit is tried with a larger value; units without an effect are then tried with a smaller one. A unit with an
-    effect is tried at once with further factors.
+    Each unit is first tried with a larger value. If this has no effect, the unit is tried with a smaller value later.
+    If it has an effect, further factors are tried at once.
     """
     gain = yield from selection.gain(base)
     if gain is None:

@@ -21,7 +21,7 @@ class Search(Protocol):
         """Try one factor on a unit under a guard; yield the candidates that further seeds confirm."""
 
     def reaches(self, unit: Unit, factor: float, guard: Guard, pair: int, confirmable: bool = True) -> bool:
-        """Return whether a factor that is new reaches the goal on the seed of a mission pair."""
+        """Try a factor on a mission pair's seed and return whether it reaches the goal (False if tried before)."""
 
 
 class Uses:
@@ -44,7 +44,7 @@ class Uses:
                 self.search.reaches(use, factor, guard, pair, confirmable=False)
 
     def alone(self, whole: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """If a constant reached the goal on only some seeds, once try to change each of its uses alone.
+        """If a constant reached the goal on only some seeds, try to change each of its uses alone. This is done once.
 
         The change at the other uses may be the reason why missions fail on the other seeds.
         """
