@@ -40,7 +40,7 @@ WORSE: Reason = "nominal gets worse"
 # six guards. Without these episodes, the candidate cannot be used and the search for it was in vain.
 EXAMINED = 40
 SAME = (
-    # a condition holds throughout drifted missions if at least this number of missions is the same with and without it
+    # a condition counts as holding throughout drifted missions if this many missions are the same without it
     3
 )
 SCREENED = 20  # maximum number of candidates per search that are run on fresh seeds
@@ -147,7 +147,8 @@ class Examiner:
     def _too_little(self, examined: Tried) -> bool:
         """Return whether a candidate earns too little under the drift.
 
-        A loss in the designed world does not count, even if its size was not shown: a narrower condition prevents it.
+        A loss in the designed world does not count, even if the test did not show its size: a narrower condition can
+        prevent such a loss.
         """
         return examined.reason in (*TOO_LITTLE, *WEAK) and examined.candidate not in self._missed.costly
 
@@ -158,7 +159,7 @@ class Examiner:
         return bool(candidate.guard.conjuncts) and known >= SAME and not firing(self.order, candidate)
 
     def _harmful(self, candidate: Candidate) -> Iterator[Candidate]:
-        """Yield the candidate without its condition if it then restores the drifted world but harms the designed."""
+        """Yield the candidate without its condition if it then helps the drifted world but harms the designed one."""
         known = self.ledger.alike(replace(candidate, guard=candidates.ALWAYS))
         if known is not None and known.reason in STRONG:
             yield known.candidate
@@ -166,7 +167,7 @@ class Examiner:
     def _other_values(
         self, candidate: Candidate, examined: Tried, weak: list[Guard], trials: Trials
     ) -> Iterator[OtherValues]:
-        """Yield sources of other values that are tried before the candidate's next guard; update `weak`."""
+        """Yield generators of other values, which are tried before the candidate's next guard. Update `weak`."""
         guard = examined.candidate.guard
         if guard == candidates.ALWAYS and examined.reason in (*WEAK, *STRONG):
             yield self.others.unguarded(candidate, examined.reason, trials)
@@ -255,7 +256,7 @@ class Examiner:
             return False
 
     def _failing_at_once(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Return why a candidate fails on the first seed or as designed, or "" if it passes."""
+        """Return why a candidate fails on the first seed or in the designed world, or "" if it passes."""
         goal = self.order.goal
         first = goal.pairs[0].seed
         try:
@@ -296,7 +297,7 @@ class Examiner:
         return self.ledger.enter(Tried(candidate, reason, ()))
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
-        """Return the candidate with the best value nearby, or such a candidate's known result."""
+        """Return the candidate with the best value nearby. If a similar candidate has a result, return that instead."""
         known = self._known(candidate)
         if known is not None:
             return known
@@ -390,7 +391,7 @@ class Examiner:
         return replace(found, nominal=tuple(self.mutants.run(candidate, seed, None) for seed in fresh))
 
     def _named(self, reason: Reason, totals: Sequence[float]) -> Reason:
-        """If the reward is even below that of the unrepaired program, replace the reason "gain too small"."""
+        """Replace the reason "gain too small" if the reward is even lower than that of the unrepaired program."""
         worse = reason == "gain too small" and fmean(totals) < self.order.goal.online
         return "worse than unrepaired" if worse else reason
 

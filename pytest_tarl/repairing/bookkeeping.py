@@ -94,7 +94,7 @@ def _only_logs(analysis: Analysis, call: ast.Call) -> bool:
 
 @cache
 def _callees(texts: tuple[str, ...]) -> dict[str, frozenset[str]]:
-    """Map function and method names to the names that they mention; equal names are one function."""
+    """Map function and method names to the names that they mention. Functions with equal names count as one."""
     found: dict[str, frozenset[str]] = {}
     for text in texts:
         for function in _functions(text):

@@ -61,5 +61,5 @@ class Purse:
         return trials
 
     def settle(self, trials: Trials) -> None:
-        """Subtract the episodes that a phase spent."""
+        """Pay for the episodes that a phase spent."""
         self.spent += trials.spent

@@ -42,7 +42,7 @@ def centred(
 ) -> Candidate:
     """Return the candidate with the best value found by hill climbing on known seeds.
 
-    The climb ends when it reaches a value that was `examined` before, because its further steps were taken then. A
+    The climb ends when it reaches a value that was `examined` before, because the steps from there were tried then. A
     candidate that fails on these seeds, or that loses little, is returned unchanged. The loss is the difference from
     the designed missions of these seeds: if the designed missions also earn less than the mean, a better value would
     only be fitted to a few starts. Raise BudgetSpentError.
@@ -66,7 +66,7 @@ def centred(
 def _loses_little(
     candidate: Candidate, trials: Trials, goal: Goal, seeds: Sequence[int], enough: float, margin: float
 ) -> bool:
-    """Return whether a candidate earns less than `enough` but nearly as much as designed."""
+    """Return whether a candidate earns less than `enough` but nearly as much as the designed missions."""
     if goal.harder or fmean(trials(candidate, seed).total for seed in seeds) >= enough:
         return False
     lost = trials.lost(candidate, seeds)
@@ -116,7 +116,7 @@ def _climbed(
 
 
 def _at_the_edge(further: Candidate | None, trials: Trials, goal: Goal) -> bool:
-    """Return whether a mission fails one step further, as at a cliff up to which the reward grows."""
+    """Return whether a mission fails one step further. The reward may grow until missions suddenly fail."""
     if further is None or not goal.passing:
         return False
     try:

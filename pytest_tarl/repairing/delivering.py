@@ -56,7 +56,7 @@ def delivered(
 
 
 def _written(order: Order, diff: str) -> str:
-    """Write the patch and a SARIF file; return the patch's path from the root, or "" on failure.
+    """Write the patch and a SARIF file. Return the patch's path relative to the root, or "" on failure.
 
     If the patch cannot be written, the report shows the whole patch, so that the repair is not lost.
     """

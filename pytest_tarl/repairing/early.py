@@ -97,7 +97,7 @@ class Early:
         yield from self._surely(symptoms=False)
 
     def _surely(self, symptoms: bool) -> Iterator[Candidate]:
-        """Once, yield factors on published fields; if `symptoms` is true, also yield changes with clear symptoms."""
+        """Yield factors on published fields and, with `symptoms`, changes with clear symptoms. This is done once."""
         if self._surest is None:
             self._surest = Structures(self.order, self.guards, self.trials, signs=self.signs(self.trials))
             yield from self._counted(self._surest.surest(FEW, symptoms=symptoms))

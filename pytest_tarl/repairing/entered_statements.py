@@ -1,6 +1,6 @@
 """Find the statements that a mission reaches only with a change, which shows that it gets further.
 
-For example, a climbing robot with too low flippers never leaves the floor. With higher flippers, it climbs a step,
+For example, a climbing robot whose flippers are too low never leaves the floor. With higher flippers, it climbs a step,
 slides down again and earns less than before. The reward shows no progress, but the mission now runs statements that so
 far only the designed mission ran. One of the constants of these statements is what stops the mission now.
 """

@@ -43,7 +43,7 @@ Number = bool | int | float
 
 
 def file_parameters(order: Order, operands: Sequence[Operand]) -> list[ParameterInFile]:
-    """Return the parameters that no operand stands for by itself. Those that a data flow names come first."""
+    """Return the parameters that no single operand represents. Those whose names the data flows read come first."""
     analysis = order.analysis
     calls = {key: one for one in operands if (key := _key_of_call(analysis, one))}
     known: dict[str, list[Operand]] = {}
@@ -68,15 +68,15 @@ def file_parameters(order: Order, operands: Sequence[Operand]) -> list[Parameter
 
 
 def _changes(use: Operand, value: Number | None) -> bool:
-    """Return whether a changed use of a parameter changes its value; a factor on a use changes no zero or boolean."""
+    """Return whether a change at a use can change the parameter. A factor there cannot change 0 or a boolean."""
     return use.value is not None or (bool(value) and not isinstance(value, bool))
 
 
 def _values(order: Order, operands: Sequence[Operand]) -> Iterator[tuple[str, Place, float]]:
-    """Yield parameter keys with their numbers in files, or else with their defaults.
+    """Yield parameter keys, each with its number in a file, or else with its default in the program.
 
-    The last element is the usual size of such a parameter if its value is 0. The default of a parameter that is an
-    operand is left out.
+    The last element is a likely size for a parameter whose value is 0, and otherwise 0. Defaults that are operands are
+    left out.
     """
     read = order.online.recorded.parameters
     texts = files_of_packages(order) if read else {}
@@ -123,9 +123,11 @@ def files_of_packages(order: Order) -> dict[str, str]:
 def places_in_force(name: str, value: Number, texts: Mapping[str, str]) -> list[Place]:
     """Return the numbers in files that may have set a parameter, given its absolute name and its value.
 
-    There are three kinds. A value in a YAML file whose keys name the node is the best, and a default in a `.cfg` file
-    is the worst, because it is in force only if no other file sets the parameter. Only places of the best kind found
-    are returned.
+    There are three kinds of places, from the best to the worst. Only places of the best kind found are returned:
+
+    - a value in a YAML file whose keys name the node
+    - a value in any other file
+    - a default in a `.cfg` file, which is in force only if no other file sets the parameter
     """
     ranked: dict[int, list[Place]] = {}
     for place in configured(name, texts):
@@ -144,7 +146,7 @@ def _rank(place: Place, keys: Sequence[str] | None) -> int:
 def uses_of(
     analysis: Analysis, parameter: ParameterInFile, operands: Sequence[Operand]
 ) -> tuple[Operand, ...]:
-    """Return the operands that stand for a parameter in a file by themselves, if one can change its value."""
+    """Return the operands that each represent a parameter in a file; none if they cannot change its value."""
     uses = tuple(one for one in operands if parameter.setting in _keys(analysis, one))
     return uses if any(_changes(one, parameter.value) for one in uses) else ()
 
@@ -169,7 +171,7 @@ def _key_of_call(analysis: Analysis, operand: Operand) -> str:
 
 
 def _keys(analysis: Analysis, operand: Operand) -> Iterator[str]:
-    """Yield the keys of the parameters that an operand may stand for by itself."""
+    """Yield the keys of the parameters that an operand may represent."""
     yield key_of(parameter(analysis, operand))
     if operand.value is not None:
         yield operand.code.rpartition(".")[2]
@@ -187,11 +189,15 @@ def _use(
     calls: Mapping[str, Operand],
     named: Mapping[str, tuple[SiteId, Span]],
 ) -> tuple[SiteId, Span] | None:
-    """Return the statement and expression that likely use a parameter, or None without a flow.
+    """Return the statement and expression that likely use a parameter, or None if there is no data flow.
 
-    The first of these that exists is returned: the call that reads the parameter; an expression without a known
-    parameter, in a function that contains the key; an expression in a flow with the parameter's name; any expression
-    without a known parameter; any expression.
+    The first of these that exists is returned:
+
+    - the call that reads the parameter
+    - an expression without a known parameter, in a function that contains the key
+    - an expression in a flow with the parameter's name
+    - any expression without a known parameter
+    - any expression
     """
     if key in calls:
         return calls[key].site, calls[key].span
@@ -240,7 +246,7 @@ def _node(analysis: Analysis, operand: Operand) -> ast.expr | None:
 
 
 def _usual_size(key: str, read: Mapping[str, Number]) -> float:
-    """Return the usual size of a parameter of 0, from parameters with similar names."""
+    """Return a likely size for a parameter whose value is 0: the median size of parameters with similar names."""
     first = re.split(r"[_.]", key)[0]
     alike = [
         abs(value)

@@ -37,9 +37,9 @@ def following(order: Order, candidate: Candidate) -> Iterator[Candidate]:
     """Yield unconditional candidates that scale the changed constant by a power of a sensor or a variable.
 
     The sensors of the candidate's condition come first, then the other sensors. Variables that the node has where it
-    uses the constant come last: for example, a speed may not be declared as a sensor. The usual values of the sensor or
-    variable must differ clearly between the worlds. The candidate must change one constant by a positive factor, at one
-    or all of its uses.
+    uses the constant come last. They are needed because a quantity such as a speed may not be declared as a sensor. The
+    usual values of the sensor or variable must differ clearly between the worlds. The candidate must change one
+    constant by a positive factor, at one or all of its uses.
     """
     factors = {factor(one) for one in candidate.mutations}
     by = factors.pop() if len(factors) == 1 else None

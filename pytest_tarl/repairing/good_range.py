@@ -33,7 +33,7 @@ ROUNDING = 0.1  # share of the range by which the new value may be rounded
 PROBES = 3  # maximum number of missions that show where the range ends
 SEEDS = 5  # number of known seeds on which the new value must pass
 COSTS = 0.1  # maximum reward that the new value may lose, as a share of the margin
-# if no value was tried beyond a value, the first value that is tried there has at least this ratio to it
+# minimum ratio between the farthest good value and the first value that is tried beyond it
 FARTHER = 1.3
 OPEN = 1.32  # minimum ratio between the ends of a range if one end is unknown
 NARROW = 1.1  # a value is moved only if the ratio between the ends of the range is at least this
@@ -101,7 +101,7 @@ class _Ends:
         return self.inner + margin <= self.place <= self.outer - margin
 
     def probe(self) -> None:
-        """Run values beyond the good ones to find the ends of the range, while the value may lie at one."""
+        """Run values beyond the good ones until it is clear whether the candidate's value is at an end of the range."""
         if self.outer == inf:
             beyond = self.farthest + max((self.farthest - self.inner) / 2, log(FARTHER))
             if self._try(beyond):
@@ -134,7 +134,7 @@ class _Ends:
         return good
 
     def inside(self) -> Iterator[Candidate]:
-        """For a value at an end of the range, yield one in the middle, then one halfway to it."""
+        """If the value lies at an end of the range, yield the value in the middle, then the value halfway there."""
         width = self.outer - self.inner
         if self.within or width == inf or width < log(NARROW):
             return

@@ -49,7 +49,7 @@ def harmed(mutants: Mutants, candidate: Candidate, trials: Trials, missed: Misse
 
 
 def lost_as_designed(mutants: Mutants, candidate: Candidate, missed: Missed) -> float:
-    """Return a candidate's mean loss in recorded missions that it has run; 0 without any."""
+    """Return a candidate's mean loss in the recorded missions that it has run; 0 if it has run none."""
     recorded = _recorded(mutants.order)
     lost = [recorded[seed] - total for (one, seed), total in missed.designed.items() if one == candidate]
     return fmean(lost) if lost else 0.0

@@ -33,7 +33,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refused:
-    """A refused candidate, the reason, and its mean reward on fresh seeds (-inf without any)."""
+    """A refused candidate, the reason, and its mean reward on fresh seeds (-inf if it never ran there)."""
 
     candidate: Candidate | None
     reason: Reason

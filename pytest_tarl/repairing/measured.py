@@ -1,4 +1,4 @@
-"""Steps from recorded missions in which a node's value differs by a factor or offset.
+"""Derive steps for constants from recorded missions in which a node's values differ by a factor or an offset.
 
 For example, if electrodes deliver 45 % of their signal, the threshold for the signal must be 45 % as large. If a sensor
 reads 14 too high, a set point that is compared with the reading must be 14 higher. Such steps have the unit and the
@@ -49,11 +49,12 @@ class Change:
 def hints(order: Order, recorded: Sequence[Recorded], operands: Sequence[Operand]) -> list[Hint]:
     """Return the changes of named constants that the recorded mission pairs suggest, the most certain ones first.
 
-    A constant that is compared with a value, added to it or subtracted from it has the unit of this value. The constant
-    must therefore change as the value did. If values changed by the same factor, the constants beside them first change
-    together by this factor, then one by one, then by the difference. A constant that multiplies or divides a value
-    changes by the factor of the result and by its inverse. A threshold that only designed missions cross moves to where
-    drifted missions cross it, even if it is a literal.
+    - A constant that is compared with a value, added to it or subtracted from it has the unit of this value, so it must
+      change as the value did. If values changed by the same factor, the constants beside them first change together by
+      this factor, then one by one, then by the difference.
+    - A constant that multiplies or divides a value changes by the factor by which the result changed, and by the
+      inverse of this factor.
+    - A threshold that only designed missions cross moves to where drifted missions cross it, even if it is a literal.
     """
     changes = _changes(order, recorded)
     values = _values(order, recorded)
@@ -161,7 +162,7 @@ def _compared(
     source: Document,
     node: ast.expr,
 ) -> Iterator[Sequence[tuple[Floats, Floats]]]:
-    """For each statement that makes values with which a threshold is compared, yield these values by mission pair."""
+    """For each statement that computes the values compared with a threshold, yield these values by mission pair."""
     around = source.parents.get(node)
     if not isinstance(around, ast.Compare) or len(around.ops) != 1:
         return
@@ -228,7 +229,7 @@ def _beside(
 
 
 def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -> Change:
-    """Return the constant's change, opposite if `-constant` is compared or a value is added to it."""
+    """Return the change of the constant: the opposite one if `-constant` is compared or a value is added to it."""
     opposite = isinstance(inner, ast.UnaryOp) and isinstance(inner.op, ast.USub) and inner.operand is node
     if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add):
         opposite = not opposite

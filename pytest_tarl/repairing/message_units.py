@@ -1,4 +1,4 @@
-"""Ratios between the units that a message's names, type and use suggest.
+"""Find the ratios between the units that a message's names, type and use suggest.
 
 For example, a topic `/tank/pressure` may change from bar to psi, but nothing would explain the same ratio on a topic
 `/ball`. Powers of ten occur with every quantity: millimetres, percent, thousandths.

@@ -32,11 +32,12 @@ class Lost:
 class Missed:
     """Seeds on which tested candidates lost reward, with the total reward that counts as close to designed.
 
-    `few` holds these seeds for candidates that lost reward in at most the share `FEW` of their missions. `poor` holds
-    the candidates that failed hardly any mission but earned too little. For each candidate in `poor`, `spread` holds
-    missions of its test, from the smallest to the largest loss. `costly` holds the candidates that fail hardly any
-    drifted mission but may lose too much in the designed world. `harmed` maps the constants of a candidate to a
-    recorded mission that the candidate made worse. `designed` holds what candidates earned in recorded missions.
+    - `few`: these seeds, for candidates that lost reward in at most the share `FEW` of their missions.
+    - `poor`: candidates that failed hardly any mission but earned too little.
+    - `spread`: for each candidate in `poor`, missions of its test, from the smallest to the largest loss.
+    - `costly`: candidates that fail hardly any drifted mission but may lose too much in the designed world.
+    - `harmed`: maps the constants of a candidate to a recorded mission that the candidate made worse.
+    - `designed`: what candidates earned in recorded missions.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
@@ -75,7 +76,7 @@ class Missed:
         return candidate in self.costly or candidate in self.spread
 
     def equate(self, candidate: Candidate, other: Candidate) -> None:
-        """Use the results of `candidate` in recorded missions for `other`, which acts alike."""
+        """Use the results of `candidate` in recorded missions for `other`, which has the same effect."""
         for (one, seed), total in list(self.designed.items()):
             if one == candidate:
                 self.designed.setdefault((other, seed), total)
@@ -95,7 +96,7 @@ class Missed:
 
 
 def _spread(found: Acceptance) -> list[Lost]:
-    """Return missions equally spaced by loss, so that their mean loss is close to the test's."""
+    """Sort the missions by loss and return some at equal intervals, so that their mean loss is close to the test's."""
     rows = zip(found.seeds, found.drifted, found.designed, strict=False)
     ranked = sorted(
         (Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss

@@ -45,7 +45,7 @@ class Signs:
         return max((found.get(one, 0.0) for one in symptoms), default=0.0)
 
     def overlap(self, order: Order, sensor: Sensor) -> float:
-        """Return the share of steps with a sensor's bins in both worlds; 0 if nothing is known.
+        """Return the share of steps that are in the same bins of a sensor in both worlds; 0 if nothing is known.
 
         Only steps that both missions of a pair reached count, because a mission that ends early visits fewer bins.
         """
@@ -61,7 +61,7 @@ NO_SIGNS = Signs()
 
 
 def mission_pairs(order: Order, trials: Trials) -> tuple[Recorded, ...]:
-    """Record and charge `PAIRS` mission pairs; none if budget or test does not allow it."""
+    """Record and charge `PAIRS` mission pairs. Return none if the budget is spent or a mission cannot run."""
     if order.drift is None:
         return ()
     seeds = [pair.seed for pair in order.goal.pairs[:PAIRS]]
@@ -100,7 +100,7 @@ def _strengths(order: Order, recorded: Sequence[Recorded]) -> Iterator[tuple[str
 
 
 def _steady(order: Order, recorded: Sequence[Recorded]) -> Iterator[str]:
-    """Yield ids of statements with a value in each designed mission that never varies in one."""
+    """Yield the ids of statements that have a value in each designed mission and never vary within a mission."""
     for number, place in enumerate(plan(order.analysis).places):
         values = [series(trace, number).values for pair in recorded for trace in pair]
         same = all(one.min() == one.max() for one in values if one.size)

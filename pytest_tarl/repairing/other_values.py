@@ -42,7 +42,7 @@ Place = tuple[frozenset[Operand], Guard]
 
 
 class Others:
-    """Propose other values of a candidate. Each method acts at most once for the same operands and guard."""
+    """Propose other values of a candidate. Each method does so at most once for the same operands and guard."""
 
     def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
         self.mutants = mutants
@@ -60,9 +60,9 @@ class Others:
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Propose larger steps after failed seeds, or smaller ones if too little is earned.
+        """Propose larger steps if a candidate fails on some seeds, or smaller ones if it earns too little.
 
-        A candidate that fails on some seeds is at the edge of the range of good values.
+        A candidate that fails on only some seeds is at the edge of the range of good values.
         """
         place = (operands(candidate), candidate.guard)
         if place in self._pushed:
@@ -140,7 +140,7 @@ class Others:
                 good.append(middle)
             between.told(STRONG[0] if enough else WEAK[0])
         if good and self.ledger.alike(good[len(good) // 2]) is None:
-            # known missions alone would lead it back towards the refused value, which earned more on them
+            # the refused value earned more on known missions, so centring would move this value back towards it
             self.chosen.add(good[len(good) // 2])
             yield good[len(good) // 2]
 
@@ -152,9 +152,9 @@ class Others:
     def nearer(self, costly: Candidate, trials: Trials) -> OtherValues:
         """Propose a value nearer to the original value if `costly` may lose too much in the designed world.
 
-        A smaller change does less harm in the designed world. Bisect for the smallest change with which missions
-        succeed on the known seeds (the hardest seeds run first) and that passes the missions that other refused
-        candidates lost. Propose the middle of the good values. Raise BudgetSpentError.
+        A smaller change does less harm in the designed world. Bisect for the smallest change that succeeds on the known
+        seeds (the hardest seeds run first) and in the missions that other refused candidates lost. Propose the middle
+        of the good values. Raise BudgetSpentError.
         """
         place = (operands(costly), costly.guard)
         if place in self._nearer:
@@ -205,7 +205,7 @@ class Others:
                     break
 
     def _off_plateau(self, refused: Candidate, trials: Trials) -> Iterator[Candidate]:
-        """Yield the first value in each direction that leaves a plateau of values that all act alike.
+        """Yield the first value in each direction beyond a plateau, on which all values have the same effect.
 
         For instance, a node that looks at the time twice a second waits equally long for all times from 0.51 to 1 s.
         """
@@ -305,7 +305,7 @@ class Others:
 
 
 def ratio_of(one: Candidate, other: Candidate) -> float | None:
-    """Return the ratio of the factors of two candidates on one same constant, else None."""
+    """Return the ratio of two candidates' factors if both change the same constant, else None."""
     if one.guard != other.guard or operands(one) != operands(other):
         return None
     mine, its = common_factor(one), common_factor(other)

@@ -92,7 +92,7 @@ class _Tests:
     spent: int = 0
 
     def helping(self, candidate: Candidate) -> Best | None:
-        """Return the candidate with its gains; None if it does not help or loses too much as designed."""
+        """Return the candidate with its gains; None if it does not help or loses too much in the designed world."""
         try:
             drifted = self._gained(candidate, self.mutants.order.drift)
             designed = self._gained(candidate, None) if drifted.low > 0.0 else None
@@ -111,7 +111,7 @@ class _Tests:
 
 
 def _placed(mutants: Mutants, examiner: Examiner, candidate: Candidate) -> tuple[Candidate, int]:
-    """Move the candidate to the definition if it acts alike there; return it and the number of episodes run."""
+    """Move the candidate to the definition if it works there, too. Return it and the number of episodes run."""
     trials = Trials(lambda one, seed: mutants.run(one, seed, mutants.order.drift), PLACING)
     try:
         return examiner.placing(candidate, trials) or candidate, trials.spent

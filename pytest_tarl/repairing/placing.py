@@ -77,7 +77,7 @@ class Placing:
                 )
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move mutations to definitions in use; None without any or if the moved repair fails."""
+        """Move mutations to the definitions that the test uses; None if there are none or the moved repair fails."""
         mutations: list[Mutation] = []
         for mutation in candidate.mutations:
             places = () if _stays(mutation) else self._places(mutation, candidate, trials)
@@ -115,7 +115,7 @@ class Placing:
         return self._in_force[one]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> tuple[Place, ...]:
-        """Return the first places where a change affects the episode, so that the test uses them."""
+        """Return the first places where a change affects the episode, which shows that the test uses them."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
@@ -150,7 +150,8 @@ class Placing:
 
         A node may set a variable in several modes. If the test does not run a mode, its number stays as it is, because
         nothing shows that it should change. To find out, the whole change is compared with the change without one
-        place. A change at this place alone would not do, because the mission may fail before it reaches the place.
+        place. Trying the change at this place alone would not suffice, because the mission may fail before it reaches
+        the place.
         """
         if not 1 < len(places) <= MOST_PLACES:
             return tuple(places)

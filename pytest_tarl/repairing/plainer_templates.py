@@ -1,6 +1,7 @@
 """Try a factor, such as `3.0 * turn`, instead of a change that keeps state.
 
-An integral also overcomes friction or a weak actuator. The symptom is the same in all cases: an offset remains.
+For example, an integral also overcomes friction or a weak actuator, because the symptom is the same: an offset remains.
+In these cases, a factor may be enough.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ Test = Callable[[Sequence[int]], Acceptance]  # tests a candidate on the given s
 
 @dataclass(frozen=True)
 class Ranged:
-    """A test's seeds in order, and the range's parts in which the candidate passed or lost."""
+    """The seeds of a test in order, and the parts of the range in which the candidate passed or lost."""
 
     seeds: tuple[int, ...] = ()
     held: tuple[Band, ...] = ()
@@ -98,7 +98,7 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 
 
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
-    """Describe the sizes at which a candidate passed if they are one end of a range, else ""."""
+    """If a candidate passed only at one end of a range of sizes, describe where; else return ""."""
     for part in order.comparison.sizes:
         near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
         far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]

@@ -1,4 +1,4 @@
-"""Limits that a mission reaches, but its designed mission does not; they may stop it.
+"""Find limits that a drifted mission reaches but the designed mission does not: they may stop the drifted mission.
 
 For example, a bottle capper gives up when its spindle has made two turns or has turned for a second. In the designed
 world, no cap takes that much, so neither limit is ever reached. In the drifted world, the first limit is reached and,
@@ -98,7 +98,7 @@ def _reached(order: Order, step: Step, pair: Pair, before: Series | None) -> Ite
 
 
 def _newly(pair: Pair, outcome: float) -> int | None:
-    """Return the step of a comparison's first result beyond the designed mission's, or None.
+    """Return the step at which a comparison has given a result more often than in the designed mission, or None.
 
     The result must be rare in the designed mission. Only steps before the end of the drifted mission count.
     """
@@ -111,12 +111,12 @@ def _newly(pair: Pair, outcome: float) -> int | None:
 
 
 def _times(holds: Bools) -> Ints:
-    """Return the indices at which something begins to hold."""
+    """Return the indices at which `holds` becomes true."""
     return np.flatnonzero(holds & ~np.concatenate([[False], holds[:-1]]))
 
 
 def _stays(pair: Pair, bound: float) -> int | None:
-    """Return the first step at a bound, if the value is often there but rarely as designed, else None."""
+    """Return the first step at a bound if the value is often there, but rarely in the designed mission; else None."""
     at = _at(pair.drifted, bound)
     often = at.mean() >= OFTEN and _at(pair.designed, bound).mean() <= RARELY
     return int(pair.drifted.step[np.flatnonzero(at)[0]]) if often else None
@@ -137,7 +137,7 @@ def _test(source: Document, line: int) -> ast.expr | None:
 
 
 def _side(source: Document, node: ast.expr, test: ast.expr) -> float:
-    """Return 1 if a larger constant makes a test true, -1 if false, 0 if unknown.
+    """Return 1 if a larger constant makes a test true, -1 if it makes the test false, 0 if unknown.
 
     Only sums and products around the constant are followed. A constant that is subtracted has the opposite effect.
     """

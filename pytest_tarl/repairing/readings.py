@@ -1,4 +1,4 @@
-"""Corrections of sensor readings wrong from the start, by an offset or factor.
+"""Correct sensor readings that are wrong from the start, by an offset or a factor.
 
 Both missions of a pair begin in the same state, and when the first message arrives, no command has had an effect yet.
 If the first value of a statement then differs by the same amount or factor in all pairs, the sensor is wrong. For

@@ -348,7 +348,7 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites in the order of slices, then sites in no recording or flow."""
+    """Return the sites in the order of the slices, then the sites that the slices do not rank."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
     analysis = order.analysis

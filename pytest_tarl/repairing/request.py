@@ -72,7 +72,7 @@ class Order:
 
     @cached_property
     def reference(self) -> Reference:
-        """Return the designed world with which repairs are compared."""
+        """Return the recorded designed missions. Repairs are compared with them."""
         offline, verdict = self.fixture.sample, self.comparison.verdict
         margin = verdict.tolerance or SMALL * verdict.loss
         totals, passed = offline.total.tolist(), float(offline.passed.mean())

@@ -2,9 +2,9 @@
 
 For example, a new sensor sends degrees instead of radians, or millimetres instead of metres. What the node computes
 from such a number may look like noise (if an angle is wrapped) or like a constant (if a value is limited). The numbers
-in the message itself still show the factor. If both missions begin in the same state, already the first message shows
-it. Otherwise, the usual sizes have a ratio that only a change of unit explains. The factor belongs where the number is
-read, before anything is computed from it.
+in the message itself still show the factor. If both missions begin in the same state, the first message already shows
+it. Otherwise, the ratio between the usual sizes shows it, if only a change of unit explains this ratio. The factor
+belongs where the number is read, before anything is computed from it.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:
 
 
 def jumps(candidate: Candidate) -> list[str]:
-    """Describe by how much constants jump at the thresholds of numeric conditions. Without any, return nothing."""
+    """Describe by how much constants jump at the thresholds of numeric conditions, if there are such conditions."""
     sensors = edges(candidate.guard)
     if not sensors:
         return []

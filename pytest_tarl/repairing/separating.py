@@ -16,7 +16,7 @@ GAP = 0.4  # minimum width of the gap between two groups of values, as a share o
 
 
 def separating(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float | None:
-    """Return the factor that puts as many values above a threshold as designed; None if they already do.
+    """Return the factor that puts the same share of values above a threshold as designed; None if none is needed.
 
     `pairs` are the values of designed and drifted missions, of shape (values,) each. In each pair, the share must
     differ in the same direction. The new threshold lies halfway between two drifted values, on a log scale, or beyond
@@ -43,9 +43,11 @@ def between_groups(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> 
     """Return the factor that moves a threshold between the same groups as designed, or None.
 
     For example, the voltage of open contacts is near 21 V, and that of a charger near 28 V. If worn contacts leave only
-    23 V of the 28 V, the threshold must lie between 21 and 23 V. A factor is returned only if all of these conditions
-    hold: both worlds have two groups; the threshold is between the designed groups but not between the drifted groups;
-    and all values have the threshold's sign.
+    23 V of the 28 V, the threshold must lie between 21 and 23 V. A factor is returned only under these conditions:
+
+    - In both worlds, the values form two groups.
+    - The threshold is between the designed groups, but not between the drifted groups.
+    - All values have the threshold's sign.
     """
     size, pairs = _sized(threshold, pairs)
     if not pairs:
@@ -97,7 +99,7 @@ def reaching(threshold: float, pairs: Sequence[tuple[Floats, Floats]]) -> float 
 def _sized(
     threshold: float, pairs: Sequence[tuple[Floats, Floats]]
 ) -> tuple[float, Sequence[tuple[Floats, Floats]]]:
-    """Return the size of a threshold, and the values with opposite signs if the threshold is negative."""
+    """Return the threshold and the values. If the threshold is negative, flip the sign of all of them."""
     sign = 1.0 if threshold > 0.0 else -1.0
     return abs(threshold), [(sign * one, sign * other) for one, other in pairs]
 

@@ -18,7 +18,7 @@ _PURE = ("abs", "bool", "float", "int", "max", "min", "pow", "radians", "degrees
 
 
 def defined_once(operands: Iterable[Operand]) -> set[str]:
-    """Return the codes of the operands that stand for one constant everywhere."""
+    """Return the codes of the operands that mean the same constant everywhere."""
     return {one.code for one in operands if one.definition is not None}
 
 

@@ -114,7 +114,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]:
-    """Return parameters in files for which no operand stands, then the operands.
+    """Return the parameters in files that no operand represents, then the operands.
 
     If a call reads one of these parameters, the call is left out. It is kept if a repair may need a condition, because
     conditions are written at uses. If a statement that is in no data flow uses the parameter while the node runs, this
@@ -133,10 +133,10 @@ def _with_parameters(order: Order, operands: Sequence[Operand]) -> list[Operand]
 def _given_to_several(
     analysis: Analysis, found: Mapping[Operand, int], ranks: Mapping[SiteId, int]
 ) -> dict[Operand, int]:
-    """Map constants passed to several own-class objects to the rank of their best user.
+    """Map constants that are passed to several objects of one class to the rank of their best user.
 
     If a class has only one object, the constant is found where the object uses it. If the class has several objects,
-    such as two wheels, the use stands for several constants. Then each constant is changed where its object is made.
+    such as two wheels, one use reads several constants. Then each constant is changed where its object is made.
     """
     known = {one.definition for one in found}
     last = len(ranks)

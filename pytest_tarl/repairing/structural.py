@@ -193,9 +193,9 @@ class Structures:
                 self.trials.budget, self.trials.reserve = whole, 0
 
     def _beyond_its_share(self, candidate: Candidate, whole: int) -> Iterator[Candidate]:
-        """Yield a candidate, but first a factor that does the same as a candidate with state.
+        """Yield a candidate. If it keeps state, first yield a factor that has the same effect.
 
-        Their examination may spend more than the share of the candidate's templates.
+        To examine them, the caller may spend more episodes than the share of the candidate's group.
         """
         trials = self.trials
         budget, reserve, spent = trials.budget, trials.reserve, trials.spent
@@ -268,7 +268,7 @@ class Structures:
         return [operand for operand, form in found.items() if not fixed(form)]
 
     def _telling(self) -> list[Sensor]:
-        """Return the telling sensors, without those that tell only because drifted missions end early."""
+        """Return the telling sensors, except those whose values differ only because drifted missions end early."""
         return [one for one in telling(self.order) if self.signs.overlap(self.order, one) <= OVERLAP]
 
     def _told(

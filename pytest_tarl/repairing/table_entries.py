@@ -18,7 +18,7 @@ from tarl_lint.model import Operand, SiteId, Span
 
 
 def entry_uses(analysis: Analysis, literals: Sequence[Operand]) -> dict[Operand, tuple[Operand, ...]]:
-    """Return, for each literal in a table that statements of flows read by its key, its uses there.
+    """Map each literal in a table to its uses: the expressions in flows that read it by its key.
 
     Keys that several tables have are left out, because a use does not say which table it reads.
     """

@@ -48,7 +48,7 @@ def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
 
 
 def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
-    """Yield low and high end of the sensor's bin and steps, per Markov chain entry."""
+    """For each entry of the Markov chain, yield the two ends of the sensor's bin and the number of steps."""
     names = [one.name for one in order.comparison.sensors]
     at = names.index(sensor.name)
     for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
@@ -61,7 +61,7 @@ def _used(shares: Mapping[tuple[float, float], float]) -> float:
 
 
 def _overlap(order: Order, sensor: Sensor) -> float:
-    """Return the share of steps in bins of both worlds; 1 if one has no steps."""
+    """Return the share of steps that are in the same bins in both worlds; 1 if one world has no steps."""
     designed = _shares(order, order.fixture.sample, sensor)
     drifted = _shares(order, order.online.recorded.sample, sensor)
     if not designed or not drifted:

@@ -83,7 +83,7 @@ def forms(
 
 
 def _inside(spot: Spot, twin: Spot | None) -> tuple[Spot, Spot | None]:
-    """Return the expressions that the values of both axes limit; without them, the values themselves."""
+    """Return the expressions that are limited for both axes, or else the values themselves."""
     if spot.within is None or (twin is not None and twin.within is None):
         return spot, twin
     return spot.within, twin.within if twin is not None else None
@@ -140,7 +140,7 @@ def _limited(node: ast.expr) -> bool:
 
 
 def _scales(order: Order, sensor: Sensor, spot: Spot) -> dict[str, float]:
-    """Return, per key of `of` in a template (such as `usual`), the size that scales defaults."""
+    """For each value that `of` may have in a template (such as `usual`), return the size that scales the default."""
     drifted = usual(order, sensor)
     scales = {"sensor": 1.0 / drifted, "usual": drifted, "ratio": spot.larger / drifted}
     if sensor.low is not None and sensor.low >= 0.0:

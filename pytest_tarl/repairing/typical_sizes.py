@@ -33,7 +33,7 @@ class TypicalSizes:
         }
 
     def of(self, site: SiteId, node: ast.expr) -> float:
-        """Return a site expression's usual size: recorded, else estimated from its parts, else 1."""
+        """Return the usual size of an expression at a site: recorded, else estimated from its parts, else 1."""
         return self.by_site.get(str(site)) or self._estimated(site, node) or 1.0
 
     def known(self, site: SiteId, node: ast.expr) -> float | None:

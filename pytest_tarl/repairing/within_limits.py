@@ -14,7 +14,7 @@ from pytest_tarl.patching.document import Document, Function, argument_names, ca
 
 
 def within_limits(source: Document, node: ast.expr, known: Collection[str]) -> ast.expr | None:
-    """Return the limited expression, or None without limits or if it is ambiguous.
+    """Return the limited expression, or None if nothing is limited or it is not clear what.
 
     `known` contains the code of named constants, which count as limits and as factors.
     """
@@ -58,7 +58,7 @@ def _passed(source: Document, call: ast.Call, known: Collection[str]) -> ast.exp
     if len(names) != 1 or len(returns) != 1 or not isinstance(returns[0].value, ast.Call):
         return None
     value = _clamped(source, returns[0].value, known)
-    # the clamp of a helper that calls itself would be followed without an end, so helpers of helpers are not followed
+    # helpers of helpers are not followed, because a helper that calls itself would be followed endlessly
     if value is None or not any(isinstance(one, ast.Name) and one.id in names for one in ast.walk(value)):
         return None
     return None if _constant(source, call.args[0], known) else call.args[0]

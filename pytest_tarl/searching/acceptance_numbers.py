@@ -3,8 +3,8 @@
 A look evaluates the test after a fixed number of missions. With a single look, the acceptance numbers follow from the
 bound of Clopper and Pearson: if none of 59 missions fails, the failure rate is below 5 % with 95 % confidence. If there
 are several looks, they share the risk of accepting a bad program. The risk of each look is computed exactly: the
-distribution of the number of failures is carried from look to look, and the numbers with which the program was accepted
-are removed from it.
+distribution of the number of failures is updated from look to look, and the numbers of failures that led to acceptance
+are removed.
 """
 
 from __future__ import annotations

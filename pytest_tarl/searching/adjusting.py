@@ -94,7 +94,7 @@ class Adjusting:
         return self.search.gains.most(key) * GIVES_WAY ** self._idle[key]
 
     def _open(self) -> list[tuple[Unit, Guard]]:
-        """Return the units and guards that may be refined further. If several uses act alike, return only the first."""
+        """Return the units and guards to refine further. Of several uses with the same effect, return only one."""
         search = self.search
         tried = [key for key, _ in search.gains.items()]
         distinct = set(search.gains.distinct(list(dict.fromkeys(unit for unit, _ in tried))))

@@ -133,7 +133,7 @@ class FirstSteps:
                 yield from tries.adjusting.refine(tries.pair)
 
     def _inert(self, unit: Unit, guard: Guard, factor: float) -> bool:
-        """Return whether a literal needs no further factor: the first had no effect and the literal decides nothing."""
+        """Return whether a literal needs no second factor: the first had no effect, and `deciding` is false."""
         tried = self.attempts.gains.of(unit, guard)
         literal = unit.operands[0].literal and not self.attempts.proposed
         dull = factor == NEAR[1] and NEAR[0] in tried and not self.attempts.gains.moves(unit)

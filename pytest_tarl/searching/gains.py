@@ -11,7 +11,7 @@ from tarl_lint.model import SiteId
 
 SEEN = 6  # a guard can be called idle only after this number of units were tried under the guard
 IDLE = 0.25  # a guard is idle if at most this share of the units tried under it changed an episode
-# two units act alike if at least this number of factors clearly changed the reward, each by the same amount for both
+# two units count as acting alike if at least this many factors clearly changed the reward by the same amount for both
 ALIKE = 3
 
 Key = tuple[Unit, Guard]

@@ -26,9 +26,9 @@ ROUNDED = 6e-4  # relative error of 3.14 as a value of π, rounded up
 class Oddness(IntEnum):
     """How unusual a change looks to a maintainer; the least unusual kind comes first.
 
-    `NAMED` scales a named constant and `INNER` a literal. `VARIABLE` scales a name that stands for several constants,
-    so the repair writes a new factor next to the name. `OFFSET` adds a number, flips a sign, or scales a constant that
-    is only a sign. `NATURE` changes a constant of nature.
+    `NAMED` scales a named constant and `INNER` a literal. `VARIABLE` scales a name whose value may come from several
+    constants, so the repair writes a new factor next to the name. `OFFSET` adds a number, flips a sign, or scales a
+    constant that is only a sign. `NATURE` changes a constant of nature.
     """
 
     NAMED = 0

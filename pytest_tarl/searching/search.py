@@ -307,7 +307,7 @@ class Trials:
         return [one.steps for one in known if one is not None and one.steps is not None]
 
     def same_as(self, candidate: Candidate, other: Candidate) -> int:
-        """Return on how many common seeds two candidates ran if all their outcomes there are equal, else 0."""
+        """If two candidates have equal outcomes on all common seeds, return the number of these seeds, else 0."""
         mine, its = self._outcomes(candidate), self._outcomes(other)
         both = mine.keys() & its.keys()
         return len(both) if all(mine[seed] == its[seed] for seed in both) else 0
