@@ -31,7 +31,7 @@ LOOKS = tuple(range(60, 201, 20))  # looks: numbers of episodes after which the 
 SEEDS = SCREEN + LOOKS[-1]
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-# share of the risk α that the first test spends; each later test spends a third of what the test before it spent
+# share of the risk α that the first test spends; each later test spends a third as much as the test before it
 SHARE = 2 / 3
 
 

@@ -111,7 +111,7 @@ class Attempts:
         self._divided: set[Unit] = set()  # units that need different values in different missions
         # units that were adjusted because their change earned nearly enough
         self._adjusted: set[tuple[Unit, Guard]] = set()
-        # how often the value of a unit was moved further because it lost the same missions as rejected candidates
+        # how often the value of a unit was adjusted because it lost the same missions as rejected candidates
         self._moved: Counter[tuple[Unit, Guard]] = Counter()
         self._settled = Settled()
 
@@ -223,7 +223,7 @@ class Attempts:
                     return
 
     def _moved_on(self, unit: Unit, candidate: Candidate, factor: float, pair: int) -> Iterator[Candidate]:
-        """If a value loses the same missions as rejected candidates, move it further (see `lost_missions`)."""
+        """If a value loses the same missions as rejected candidates, adjust it once more (see `lost_missions`)."""
         key = (unit, candidate.guard)
         if self.proposed or self._moved[key] >= MOVES or not self.trials.loses(candidate):
             return

@@ -1,8 +1,8 @@
 """Confirm a candidate: it must pass on further seeds and earn about as much as designed missions.
 
-A mission that lost much reward is often a hard one, such as a mission with a longer way, and earns less in the designed
-world, too. A candidate may pass on the seeds of such missions and still earn less than the mean designed mission. It is
-then compared with the designed missions of the same seeds.
+Missions that lost much reward are often hard ones, for example because the way is longer. They earn less in the
+designed world, too. A candidate may pass on the seeds of such missions and still earn less than the mean designed
+mission. It is then compared with the designed missions of the same seeds.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def suffices(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
 def _earns_as_designed(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
     """Return whether a candidate loses at most the margin, compared with designed missions of the same seeds.
 
-    If only few missions lose reward, the goal already contains the designed reward of each of their seeds.
+    If only a few missions lose reward, the goal already contains the designed reward of each of their seeds.
     """
     if goal.margin is None or goal.harder:
         return False

@@ -1,6 +1,6 @@
 """Before a structural change is yielded, try to change a constant instead, which a maintainer would prefer.
 
-A structural change that uses a sensor can fit by chance, because the sensor has only few values in both worlds. The
+A structural change that uses a sensor can fit by chance, because the sensor has only a few values in both worlds. The
 constant that is really wrong often gained a little with one factor and nothing with the factors beside it. If a change
 scales a whole command, the same factor on one constant of the command may have the same effect.
 """

@@ -39,7 +39,7 @@ def families(apart: Sequence[Unit]) -> tuple[Unit, ...]:
 
 
 def shared_name(code: str) -> str:
-    """Replace the word that differs within a family by `*`; return "" without such a word.
+    """Replace the word that differs within a family by `*`; return "" if there is no such word.
 
     >>> shared_name('STIFFNESS["x"]'), shared_name("self.kp_left"), shared_name("LEFT_KP"), shared_name("self.kp")
     ('STIFFNESS[*]', 'self.kp_*', '*_kp', '')

@@ -99,7 +99,7 @@ class Gains:
         return (unit, factor) in self._moved
 
     def idle_guard(self, guard: Guard) -> bool:
-        """Return whether changes under a guard hardly have effects, because the robot does little where it holds."""
+        """Return whether changes under a guard hardly have any effect, because the robot does little where it holds."""
         tried = self.under(guard)
         moved = sum((unit, guard) in self._moved_under for unit in tried)
         return bool(guard.conjuncts) and len(tried) >= SEEN and moved <= IDLE * len(tried)

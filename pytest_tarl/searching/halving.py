@@ -85,7 +85,7 @@ class Halving:
 
 
 def arm_effects(race: Race) -> dict[str, list[OperandEffect]]:
-    """Return each operand's best gain for each site; on ties, of the value tried first."""
+    """For each site, return the best gain of each operand. On ties, the value that was tried first wins."""
     best: dict[Operand, OperandEffect] = {}
     for arm in race.gains:
         for mutation in arm.unit.mutations(race.mutate, arm.factor):

@@ -1,4 +1,4 @@
-"""If a value passes easy missions but fails where rejected changes lost reward, move the value further.
+"""If a value passes easy missions but fails where rejected changes lost reward, adjust the value once more.
 
 On easy missions, many values earn enough, so these missions do not show in which direction the value should change. The
 missions in which rejected changes lost reward (lost missions) do show the direction: the next value is one with which
@@ -22,7 +22,7 @@ from pytest_tarl.searching.refining import FINEST, OUTWARD, beside
 from pytest_tarl.searching.search import Candidate, Mutate, Trials
 from pytest_tarl.searching.units import Unit
 
-MOVES = 3  # maximum number of times that the value of a constant is moved further
+MOVES = 3  # maximum number of times that the value of a constant is adjusted in this way
 STEPS = 2  # maximum number of steps in one direction while the lost mission stays exactly the same
 
 

@@ -296,8 +296,8 @@ class Preferences:
     def _milder(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Candidate | None:
         """Return a candidate with the value halfway to the old one if it earns as much, else None.
 
-        No value in between may have been tried. A value a little nearer to the old one must pass, too, so that the
-        value halfway lies inside the good range.
+        This is done only if no value in between was tried. A value a little nearer to the old one must pass, too, so
+        that the value halfway lies inside the good range.
         """
         gains = self.search.gains.of(unit, found.guard)
         halfway = milder(unit, factor, gains)

@@ -27,9 +27,9 @@ class Certainty:
     """How certain it is that the first site is ahead of all others.
 
     `by` is an approximate confidence interval for how much more the first site gains than the second one. It is
-    measured on `seeds` common seeds, and None if these are too few. `level` is the number of other sites that cannot be
-    distinguished from the first. `ahead` is the number of sites that gain significantly more. `gaining` is the number
-    of sites that gain at all.
+    measured on `seeds` common seeds; if these are too few, it is None. `level` is the number of other sites that cannot
+    be distinguished from the first. `ahead` is the number of sites that gain significantly more. `gaining` is the
+    number of sites that gain at all.
     """
 
     gaining: int

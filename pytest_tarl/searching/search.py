@@ -69,7 +69,7 @@ class Goal:
     - `passing`: whether failed missions never count as near. This is needed if ending early can earn more than
       continuing.
     - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
-    - `tolerated`: seed → the additional loss allowed on this seed if only few missions lose reward.
+    - `tolerated`: seed → the additional loss allowed on this seed if only a few missions lose reward.
     - `controls`: drifted episodes without loss.
     - `margin`: the tolerated mean loss against the designed missions of the same seeds, if known.
     """
@@ -292,7 +292,7 @@ class Trials:
     def fails_sooner(self, candidate: Candidate, goal: Goal) -> bool:
         """Return whether all missions of a candidate failed, and did so sooner than without the candidate.
 
-        A mission that ends early saves the costs of its remaining steps. Such a gain is no progress.
+        A mission that ends early saves the costs of its remaining steps. Such a gain is not progress.
         """
         known = [(self._known.get((candidate, pair.seed)), pair.steps) for pair in goal.pairs]
         ran = [(one, steps) for one, steps in known if one is not None]

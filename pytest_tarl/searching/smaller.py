@@ -84,7 +84,7 @@ def onward(
 
 
 def milder(unit: Unit, factor: float, gains: Mapping[float, float]) -> float | None:
-    """Return the factor halfway to 1 in log scale; None if one between was tried.
+    """Return the factor halfway to 1 on a log scale, or None if any factor between 1 and `factor` was tried.
 
     `gains` maps the factors tried on the unit to their gains. Booleans, constants of 0, and changes of sign have no
     such factor.

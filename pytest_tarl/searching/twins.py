@@ -2,7 +2,7 @@
 
 For example, a node sets `angular_velocity = 0.1` for two turns of a path. A mission succeeds only if both turns work.
 Literals are twins if they are assigned to the same name with the same value in one file. Uses of one name in one
-function are twins, too, if its value may come from several constants (such as a parameter of a helper function).
+function are twins, too, if the name's value may come from several constants (such as a parameter of a helper function).
 """
 
 from __future__ import annotations

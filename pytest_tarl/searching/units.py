@@ -55,7 +55,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """Add a unit with a chart after each unit that has one; for a constant of 0, replace the unit."""
+    """After each unit that has a chart, add a unit that moves on the chart. For a constant of 0, replace the unit."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])
