@@ -2,7 +2,7 @@
 
 A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The candidate was
 chosen on the known seeds, so its mean reward there is too high: a candidate that loses a third of the margin on known
-seeds may lose half of it on other seeds. A value in the middle of the range of good values loses less. To find such a
+seeds may lose half of it on other seeds. A value in the middle of the range of good values loses less. Finding such a
 value takes a few episodes on known seeds and can save a test of hundreds of episodes.
 """
 

@@ -99,7 +99,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
 
 
 def partial(mutants: Mutants, found: Best) -> Partial | None:
-    """Write a helpful change that is no repair as quoted lines; return None if writing fails."""
+    """Write a change that helps, but is not a repair, as quoted lines. Return None if writing fails."""
     order, candidate = mutants.order, found.candidate
     what = repair_words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
     made = Partial(

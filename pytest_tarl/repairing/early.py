@@ -1,7 +1,7 @@
-"""Structural changes that recorded symptoms suggest, tried during the search of constants.
+"""Try structural changes that recorded symptoms suggest during the search of constants.
 
-Most drifts are repaired by a constant within a few episodes. If that does not succeed, a structural change with a
-symptom is likelier to help than further constants.
+Changing a constant repairs most drifts within a few episodes. If it does not, a structural change that a symptom
+suggests is more likely to help than further constants.
 """
 
 from __future__ import annotations
@@ -90,8 +90,8 @@ class Early:
     def before_extreme(self) -> Iterator[Candidate]:
         """Before an extreme change of a constant, yield likelier changes: corrected readings and scaled commands.
 
-        A far too large constant can hide a sensor that reads wrongly or an actuator that became weaker, but it fits
-        only some missions.
+        A constant that is far too large can hide a wrong sensor reading or a weak actuator, but it suits only some
+        missions.
         """
         yield from self.corrected()
         yield from self._surely(symptoms=False)

@@ -1,7 +1,7 @@
-"""If only few missions fail, find more seeds with failing missions, and the designed reward of these seeds.
+"""If only a few missions fail, find more seeds with failing missions, and the designed reward of these seeds.
 
-If only few missions fail, they often have something in common, such as a person on the road. This makes them harder in
-the designed world, too, so no repair can be expected to reach the recorded mean on them. Each mission is therefore
+If only a few missions fail, they often have something in common, such as a person on the road. This makes them harder
+in the designed world, too, so no repair can be expected to reach the recorded mean on them. Each mission is therefore
 compared with the designed mission of the same seed. The acceptance test draws fresh seeds, so this selection does not
 bias it.
 

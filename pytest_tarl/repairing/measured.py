@@ -238,7 +238,7 @@ def _mirrored(change: Change, around: ast.AST, inner: ast.AST, node: ast.expr) -
 
 
 def _made_at(order: Order, operand: Operand, source: Document, node: ast.expr) -> list[str]:
-    """Return the ids of sites that assign a name or attribute; for a local name, in its function."""
+    """Return the ids of sites that assign a name or attribute. Look for a local name only in its function."""
     if not isinstance(node, ast.Name | ast.Attribute):
         return []
     code, found = ast.unparse(node), []

@@ -105,7 +105,7 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode of a candidate and return its outcome. Raise StaleTextError.
 
     The unrepaired program ran in this test without an error, so the candidate causes any error now, such as a reward
-    that is not a number. It is no error if a node publishes nothing: for example, a watchdog with a higher threshold
+    that is not a number. A node that publishes nothing is not an error: for example, a watchdog with a higher threshold
     may rightly stay silent in a mission, and the reward shows whether it should. After an error or a crash of the node,
     the reward so far is meaningless, so the total is at most that of the worst recorded episode.
     """

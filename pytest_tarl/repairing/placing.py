@@ -1,4 +1,4 @@
-"""Write a repair at the constant's definition if this test uses it, else at the use."""
+"""Write a repair at the definition of the constant if this test uses the definition, otherwise at the use."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
-    """Return the indices of recorded episodes to run: where the guard holds, if known."""
+    """Return the indices of the recorded episodes to run: those in which the guard holds, if this is known."""
     fixture = neighbour.fixture
     if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
         return range(min(EPISODES, fixture.sample.episodes))

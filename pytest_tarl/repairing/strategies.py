@@ -149,7 +149,7 @@ def _given_to_several(
 
 
 def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ...]:
-    """Return operands that decide publishing but are in no data flow; most readable first.
+    """Return operands that decide when nodes publish but are in no data flow. The most readable come first.
 
     The operands in `ranked`, which the slices rank, are left out.
     """
@@ -159,7 +159,7 @@ def aside_operands(order: Order, ranked: Sequence[Operand]) -> tuple[Operand, ..
 
 
 def _aside(analysis: Analysis) -> list[Operand]:
-    """Return the operands of statements that decide publishing but are in no data flow."""
+    """Return the operands of statements that decide when nodes publish but are in no data flow."""
     steps = (*analysis.timing, *analysis.deciding)
     return list(dict.fromkeys(o for step in steps for o in analysis.operands(step.site)))
 

@@ -183,7 +183,9 @@ class Structures:
                 for candidate in sweep.candidates():
                     changed = operands(candidate)
                     if self.trials.spent > limit and changed in yielded:
-                        break  # only further values of the same expression would be refused again
+                        # the next candidates only change the value of the same expression again, so they would be
+                        # refused, too
+                        break
                     yielded.add(changed)
                     yield from self._beyond_its_share(candidate, whole)
             except BudgetSpentError:
@@ -323,7 +325,7 @@ class Structures:
         return groups
 
     def _at(self, template: Template, among: Sequence[Spot], first: bool | None) -> Iterator[Operand]:
-        """Yield a template's operands at the first, the later or all expressions; store their forms."""
+        """Yield a template's operands at the first expressions, at the later ones, or at all. Store their forms."""
         for number, each in enumerate(forms(self.order, template, among)):
             if first is None or (number < FIRST) == first:
                 for operand, form in each:

@@ -34,7 +34,7 @@ def continuous(sensor: Sensor) -> bool:
 
 
 def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
-    """Return a sensor's mean absolute value from the middles of its bins; 1 if it is 0.
+    """Return a sensor's mean absolute value, computed from the middles of its bins; 1 if the mean is 0.
 
     `world` defaults to the drifted world.
     """

@@ -224,7 +224,7 @@ def _sent(call: ast.Call) -> Iterator[ast.expr]:
 def _computes(node: ast.expr) -> bool:
     """Return whether an expression may yield a number: a function call or a conditional expression.
 
-    The time is left out: it is no signal that a template could change.
+    The time is left out: it is not a signal that a template could change.
     """
     if isinstance(node, ast.Call):
         return not _makes_an_object(node) and not _reads_clock(node)
@@ -240,7 +240,7 @@ def _reads_clock(node: ast.expr) -> bool:
 
 
 def _is_numeric(node: ast.expr) -> bool:
-    """Return whether an expression computes a number, other than from the time, which is no signal to change."""
+    """Return whether an expression computes a number, but not from the time, which is not a signal to change."""
     if _reads_clock(node):
         return False
     if isinstance(node, ast.BinOp):
