@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tarl_lint.interpret.interpreter import Interpreter
-from tarl_lint.memory import heap
-from tarl_lint.memory.values import BOTTOM, ClassInfo, Obj, Value, join, lineage, pointer
+from tarl_lint.memory import heap, record_fields
+from tarl_lint.memory.values import BOTTOM, Obj, Value, join, lineage, pointer
 
 MATCHED: Final = "__match_args__"
 # classes whose only subpattern gets the whole object, as in `case float(number)`
@@ -36,5 +36,4 @@ def _names(ctx: Interpreter, cls: Obj) -> list[str]:
         told = ctx.store.get((owner, MATCHED))
         if told is not None:
             return [text for one in ctx.ops.unpacked(ctx, told) or () for text in one.texts()[:1]]
-    fields = (c.info.fields for c in reversed(lineage(cls)) if isinstance(c.info, ClassInfo))
-    return list(dict.fromkeys(name for names in fields for name in names))
+    return record_fields.positional(ctx, cls)

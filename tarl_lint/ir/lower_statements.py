@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.context_managers import divided
@@ -17,7 +17,8 @@ from tarl_lint.read.source import Module
 # subjects of these kinds are first stored in a temporary variable; otherwise each `case` of the `match` would
 # evaluate the subject again
 MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)
-NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that are not dataclass fields
+NAMED_BELOW = ("KW_ONLY", "dataclasses.KW_ONLY")  # annotations above fields that are passed by name only
+NO_FIELDS = ("ClassVar", *NAMED_BELOW)  # annotations that are not dataclass fields
 PASSED = "InitVar"  # part of the annotation of a field that a dataclass passes on to `__post_init__`
 
 
@@ -162,6 +163,7 @@ class Lowering(Expressions):
         target = ir.Name(*scope.resolve(node.name), position(node))
         bases, decorators = self.all(node.bases, scope), self.all(node.decorator_list, scope)
         body = self.block(node.body, inner)
+        names, only_named, passed = _annotated(node)
         return [
             ir.Class(
                 scope.next(),
@@ -172,14 +174,15 @@ class Lowering(Expressions):
                 bases,
                 body,
                 decorators,
-                tuple(name for name, _ in _annotated(node)),
+                names,
+                only_named,
                 [
                     (k.arg, self.expr(k.value, scope))
                     for k in node.keywords
                     if k.arg is not None and k.arg != "metaclass"
                 ],
                 next((self.expr(k.value, scope) for k in node.keywords if k.arg == "metaclass"), None),
-                frozenset(name for name, kind in _annotated(node) if PASSED in kind),
+                passed,
             )
         ]
 
@@ -278,10 +281,20 @@ if hasattr(ast, "TryStar"):
     STATEMENTS[ast.TryStar] = Lowering._try
 
 
-def _annotated(node: ast.ClassDef) -> Iterator[tuple[str, str]]:
-    """Yield the names that a class body annotates, with their annotations, except class variables."""
+def _annotated(node: ast.ClassDef) -> tuple[tuple[str, ...], frozenset[str], frozenset[str]]:
+    """Return the names that a class body annotates, except class variables, those below `_: KW_ONLY`, and those passed.
+
+    The last are the fields with `InitVar`.
+    """
+    names: list[str] = []
+    passed: list[str] = []
+    start: int | None = None
     for part in node.body:
         if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
-            kind = ast.unparse(part.annotation)
-            if not kind.strip("'\"").removeprefix("typing.").removeprefix("t.").startswith(NO_FIELDS):
-                yield part.target.id, kind
+            kind = ast.unparse(part.annotation).strip("'\"").removeprefix("typing.").removeprefix("t.")
+            if kind.startswith(NAMED_BELOW):
+                start = len(names)
+            elif not kind.startswith(NO_FIELDS):
+                names.append(part.target.id)
+                passed += [part.target.id] if PASSED in kind else []
+    return tuple(names), frozenset(names[start:] if start is not None else ()), frozenset(passed)

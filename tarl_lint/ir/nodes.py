@@ -334,6 +334,7 @@ class Class(Stmt):
     body: Sequence[Stmt]
     decorators: Sequence[Expr] = ()
     fields: tuple[str, ...] = ()  # names that the class body annotates, such as `x: int`
+    only_named: frozenset[str] = frozenset()  # the fields after `_: KW_ONLY`
     keywords: Sequence[tuple[str, Expr]] = ()  # except the metaclass
     metaclass: Expr | None = None
     passed: frozenset[str] = frozenset()  # the `fields` with `InitVar`, which `__post_init__` gets

@@ -7,10 +7,10 @@ from dataclasses import replace
 from tarl_lint.interpret import call_contexts, calls, dunder_methods
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
-from tarl_lint.memory import heap
+from tarl_lint.memory import heap, record_fields
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Obj, Value, const, in_order, join_all, pointer
-from tarl_lint.models import records, sizes
+from tarl_lint.models import sizes
 from tarl_lint.models.iterators import gate, listed, pairs
 
 # kinds of objects that consist of the compared values
@@ -74,7 +74,7 @@ def _of_instance(ctx: Interpreter, obj: Obj, elements: Value, it: Invocation) ->
     said = dunder_methods.special(ctx, pointer(obj), "__lt__", [elements], it.frame, it.call.pos)
     if said is not None:
         return ctx.use(said)
-    names = records.compared_fields(ctx, obj.info) if isinstance(obj.info, Obj) else None
+    names = record_fields.compared(ctx, obj.info) if isinstance(obj.info, Obj) else None
     return None if names is None else NONE.union(*(ctx.use(heap.read_field(ctx, obj, n)) for n in names))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Mapping
 from typing import Final
 
 from tarl_lint.interpret import call_contexts, calls, expressions
@@ -10,7 +10,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import generations, heap, object_contents, recency, updates
+from tarl_lint.memory import generations, heap, object_contents, recency, record_fields, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.values import (
@@ -36,9 +36,6 @@ MADE_BY: Final = {
     **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),
     **dict.fromkeys(("dict", "OrderedDict", "Counter"), "mapping"),
 }
-PLAIN: Final = frozenset(
-    ["abc.ABC", "typing.Generic", "typing.Protocol"]
-)  # base classes without a constructor of their own
 
 
 # --- fields -------------------------------------------------------------------------------------------
@@ -50,12 +47,12 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
     given = dict(named)
     rest = given.pop("*", None)
     mapping = given.pop("**", None)
-    numbered, arriving, passed = _named_tuple(cls), iter(plain), dict[str, Value]()
-    for number, (owner, name) in enumerate(_fields(cls)):
-        options = _options(ctx, owner, name)
-        inside = not _says(options, "init", False)
+    numbered, arriving, passed = record_fields.is_named_tuple(cls), iter(plain), dict[str, Value]()
+    for number, (owner, name) in enumerate(record_fields.fields(cls)):
+        options = record_fields.options(ctx, owner, name)
+        inside = not record_fields.says(options, "init", False)
         value = given.pop(name, None)
-        if value is None and inside and not _says(options, "kw_only", True):
+        if value is None and inside and not record_fields.only_named(owner, name, options):
             value = next(arriving, None)
         if value is None and mapping is not None and inside:
             value = expressions.read_item(ctx, mapping, const(name))
@@ -92,7 +89,9 @@ def _after(
     for owner in lineage(cls):
         after = ctx.store.get((owner, "__post_init__"))
         if after is not None:
-            given = [passed.get(name, UNKNOWN) for of, name in _fields(cls) if name in _passed(of)]
+            given = [
+                passed.get(name, UNKNOWN) for of, name in record_fields.fields(cls) if name in _passed(of)
+            ]
             calls.call_value(ctx, heap.bind(ctx, after, obj, owner), (given, {}), frame, call)
             return
 
@@ -101,20 +100,13 @@ def _preset(
     ctx: Interpreter, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int
 ) -> Value | None:
     """Return a field's default; for `field(default_factory=f)`, the result of f."""
-    options = _options(ctx, owner, name)
+    options = record_fields.options(ctx, owner, name)
     if options is None:
         return ctx.store.get((owner, name))
     if "default_factory" in options:
         made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
         return calls.call_value(ctx, options["default_factory"], ([], {}), frame, made)
     return options.get("default", UNKNOWN)
-
-
-def _options(ctx: Interpreter, owner: Obj, name: str) -> dict[str, Value] | None:
-    """Return the options of a dataclass field's `field(...)`; None if the field has no such call."""
-    preset = ctx.store.get((owner, name))
-    spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
-    return spec.info if spec is not None and isinstance(spec.info, dict) else None
 
 
 def field_default(ctx: Interpreter, it: Invocation) -> Value:
@@ -154,10 +146,10 @@ def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
     made = copy_of(ctx, base, it.frame, it.call.slot)
     for obj in made.objects:
         cls = obj.info if obj.kind == "instance" else None
-        names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
+        names = [n for _, n in record_fields.fields(cls)] if isinstance(cls, Obj) else []
         for name, value in named.items():
             _put(ctx, obj, name, value)
-            if name in names and _named_tuple(cls):
+            if name in names and record_fields.is_named_tuple(cls):
                 _put(ctx, obj, item_field(names.index(name)), value)
     return made
 
@@ -199,7 +191,7 @@ def described_fields(ctx: Interpreter, it: Invocation) -> Value:
         return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     listed = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
     listed.name = heap.MEMBERS
-    for number, (owner, name) in enumerate(_fields(cls)):
+    for number, (owner, name) in enumerate(record_fields.fields(cls)):
         one = recency.intern(ctx, "lib", ("field", owner.key, name), heap.NAMESPACE)
         ctx.store.put((one, "name"), const(name))
         ctx.store.put((one, "type"), UNKNOWN)
@@ -214,7 +206,7 @@ def _listing(ctx: Interpreter, it: Invocation, kind: str) -> Value:
         return Value(ctx.use(given))
     made = recency.allocate(ctx, kind, it.frame, ("display", it.call.slot))
     for obj, cls in ours.items():
-        for number, (_, name) in enumerate(_fields(cls)):
+        for number, (_, name) in enumerate(record_fields.fields(cls)):
             field = item_field(name if kind == "mapping" else number)
             updates.weaken(ctx, made, field, heap.arrive(ctx, heap.read_field(ctx, obj, name), given.deps))
     return pointer(made)
@@ -360,42 +352,6 @@ def missing(ctx: Interpreter, mapping: Obj, name: str) -> Value:
 
 
 _MISSING: Final = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), -1)
-
-
-def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
-    """Yield the fields of a class and of its base classes, in the order of the constructor's parameters."""
-    seen: set[str] = set()
-    made = any(isinstance(o.info, ClassInfo) and not set(o.info.external) <= PLAIN for o in lineage(cls))
-    for owner in reversed(lineage(cls)):
-        info = owner.info if isinstance(owner.info, ClassInfo) else None
-        for name in info.fields if info is not None and (made or _decorated(info)) else ():
-            if name not in seen:
-                seen.add(name)
-                yield owner, name
-
-
-def compared_fields(ctx: Interpreter, cls: Obj) -> list[str] | None:
-    """Return the fields that decide the order of a dataclass's instances; None for another class."""
-    fields = list(_fields(cls))
-    if not fields:
-        return None
-    return [name for owner, name in fields if not _says(_options(ctx, owner, name), "compare", False)]
-
-
-def _decorated(info: ClassInfo) -> bool:
-    """Return whether a class has a decorator, like a dataclass. Annotations in a class without one are not fields."""
-    return info.statement is None or bool(info.statement.decorators)
-
-
-def _says(options: dict[str, Value] | None, name: str, answer: bool) -> bool:
-    """Return whether `field(...)` certainly has an option."""
-    return options is not None and name in options and options[name].constant() == (True, answer)
-
-
-def _named_tuple(cls: object) -> bool:
-    """Return whether a class is a named tuple, whose fields are also elements."""
-    infos = [o.info for o in lineage(cls)] if isinstance(cls, Obj) else []
-    return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
 
 
 def _bound_by_get(ctx: Interpreter, it: Invocation) -> Value:

@@ -191,6 +191,36 @@ def scan(msg):
         case Own(x, y):
             out.publish(x)  # scan:data
             out.publish(y)  # clean
+### fields that the constructor does not take by position
+from dataclasses import field
+@dataclass
+class Jump:
+    early: float = field(init=False, default=0.0)
+    stamp: float
+    late: float = field(kw_only=True, default=0.0)
+    height: float = 0.0
+def scan(msg):
+    match Jump(1.0, msg.data):
+        case Jump(stamp, height):
+            out.publish(stamp)  # clean
+            out.publish(height)  # scan:data
+### fields below KW_ONLY, and of a class with kw_only
+from dataclasses import KW_ONLY
+@dataclass(kw_only=True)
+class Base:
+    name: str
+@dataclass
+class Jump(Base):
+    stamp: float
+    _: KW_ONLY
+    late: float = 0.0
+def scan(msg):
+    match Jump(1.0, name=msg.data):
+        case Jump(stamp):
+            out.publish(stamp)  # clean
+    match Jump(msg.data, name="a"):
+        case Jump(stamp):
+            out.publish(stamp)  # scan:data
 ### a whole number
 def scan(msg):
     match msg.data:
