@@ -230,7 +230,7 @@ def _length(ctx: Interpreter, source: Value, node: int) -> None:
     """Make a loop's decision depend on the container's length, not on the data of its elements."""
     ours = frozenset(o for o in source.pts if sizes.sized(ctx, o))
     ctx.graph.flow(sizes.length(ctx, source), node)
-    ctx.graph.choice(sizes.placed(ctx, ours), node)
+    ctx.graph.choice(sizes.placed(ctx, ours), node, counted=True)
 
 
 def _loop_end(ctx: Interpreter, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:

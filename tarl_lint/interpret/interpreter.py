@@ -334,15 +334,23 @@ class Interpreter:
         assert isinstance(frame.control, Control)  # noqa: S101 - set above, for classes when they are made
         return frame.control
 
-    def node(self, frame: Frame, slot: Hashable, role: str, pos: ir.Pos | None = None) -> int:
-        """Return the node of a value made by the frame's current statement."""
+    def node(
+        self,
+        frame: Frame,
+        slot: Hashable,
+        role: str,
+        pos: ir.Pos | None = None,
+        conditions: Iterable[tuple[int, str]] = (),
+    ) -> int:
+        """Return the node of a value made by the frame's current statement, perhaps under further conditions."""
         statement = frame.statement
         key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
         known = self.graph.numbers.get(key)
         if known is not None:
             return known
         where = pos or (statement.pos if statement is not None else frame.function.pos)
-        return self.graph.node(key, Place(frame, statement, role, where), self.branches(frame, statement))
+        branches = self.branches(frame, statement).union(conditions)
+        return self.graph.node(key, Place(frame, statement, role, where), branches)
 
     def gathered(self, key: Key, value: Value) -> Value:
         """Replace the nodes of a field with very many values by one merged node."""

@@ -153,13 +153,18 @@ def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> 
     deps = ctx.use(Value(value.deps, value.pts - mappings))
     for obj in in_order(mappings):
         deps |= heap.keys(ctx, obj, value.deps).deps
-    return deps | chosen(ctx, mappings, frame, ("member", slot)) if mappings else deps
+    return deps | chosen(ctx, mappings, frame, ("member", slot), counted=False) if mappings else deps
 
 
-def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
-    """Return a node of the decisions to add container elements, without the elements' data."""
+def chosen(
+    ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable, *, counted: bool = True
+) -> Nodes:
+    """Return a node of the decisions to add container elements, without the elements' data.
+
+    With `counted`, only the number of elements matters.
+    """
     node = ctx.node(frame, slot, "condition")
-    ctx.graph.choice(sizes.placed(ctx, objects), node)
+    ctx.graph.choice(sizes.placed(ctx, objects), node, counted=counted)
     return ctx.kept(node)
 
 

@@ -234,7 +234,7 @@ def _delete(ctx: Interpreter, s: ir.Delete, frame: Frame) -> bool:
         elif isinstance(target, ir.Attribute):
             base = expressions.evaluate(ctx, target.base, frame)
             removal.attribute(
-                ctx, base, target.name, removal.decision(ctx, frame, target.pos, counts=base.deps)
+                ctx, base, target.name, removal.decision(ctx, frame, target.pos, base=base.deps)
             )
         elif isinstance(target, ir.Item):
             remove(ctx, expressions.evaluate(ctx, target.base, frame), target.index, frame)
@@ -246,7 +246,8 @@ def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
     key = expressions.evaluate(ctx, index, frame)
     if dunder_methods.special(ctx, base, "__delitem__", [key], frame, index.pos) is not None:
         return
-    decided = removal.decision(ctx, frame, index.pos, ctx.use(key), counts=base.deps)
+    single = not isinstance(index, ir.Slice)
+    decided = removal.decision(ctx, frame, index.pos, ctx.use(key), base=base.deps, finds=single)
     if not isinstance(index, ir.Slice):
         removal.take(ctx, base, key, decided)
     elif not index.parts:

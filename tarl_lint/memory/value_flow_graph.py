@@ -23,6 +23,8 @@ MANY = 16  # maximum number of separate nodes in a field with weak updates; more
 MANY_CARRIERS = 64  # the same limit for a field that holds pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
+# way of a branch that decides which element a call removes; the number of elements does not depend on it
+WHICH = "which"
 CARRIED = 5  # this number of carriers, or of items that carriers pass on, counts as one graph operation
 # content arrives without carriers if the number of items times the number of carriers is greater than this
 MAX_CARRIED = 500
@@ -141,6 +143,19 @@ class Graph:
         self._lead(dep, node)
         return node
 
+    def one_of(self, dep: int) -> int:
+        """Return a copy of a node that keeps its conditions as data, for one of several constants.
+
+        A loop may be executed for each constant apart. Each is then a known constant, but the conditions decide which
+        constants there are.
+        """
+        inner = self.node((dep, "conditional"), self.places[dep], frozenset())
+        self.flow((dep,), inner)
+        node = self.node((dep, "one of"), self.places[dep], frozenset())
+        self.copies |= {inner, node}
+        self.flow((inner,), node)
+        return node
+
     def under(self, dep: int, decision: int, instead: Branches) -> int:
         """Return a copy of a node for readers to which other conditions apply.
 
@@ -172,12 +187,25 @@ class Graph:
         self.flow([dep for dep in deps if dep != node], node)
         return frozenset([node])
 
-    def choice(self, deps: Iterable[int], node: int) -> None:
-        """Make `node` depend on the choices that selected `deps`, but not on the data in `deps`."""
+    def choice(self, deps: Iterable[int], node: int, *, counted: bool = False) -> None:
+        """Make `node` depend on the choices that selected `deps`, but not on the data in `deps`.
+
+        With `counted`, only the number of elements matters, so WHICH element was removed is left out.
+        """
         mine = self.branches[node]
         for dep in deps:
-            if not self.branches[dep] <= mine:
-                self._choose(dep, self.branches[dep] - mine, node)
+            theirs = self.branches[dep]
+            if theirs <= mine:
+                continue
+            chosen = theirs - mine
+            if counted:
+                chosen = frozenset(branch for branch in chosen if branch[1] != WHICH)
+            if chosen:
+                self._choose(dep, chosen, node)
+
+    def without_removals(self, deps: Nodes) -> Nodes:
+        """Return nodes without those that only say WHICH element was removed."""
+        return frozenset(d for d in deps if all(way != WHICH for _, way in self.branches[d]))
 
     def _choose(self, dep: int, choice: Branches, node: int) -> None:
         """Add a gate: besides its own conditions, `node` depends on the conditions that selected `dep`."""

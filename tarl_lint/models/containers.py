@@ -18,7 +18,6 @@ from tarl_lint.memory.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
-    ClassInfo,
     Nodes,
     Obj,
     Value,
@@ -28,7 +27,17 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, launched, object_lists, ordering, removal, rows, sizes, waiting
+from tarl_lint.models import (
+    equality,
+    iterators,
+    launched,
+    object_lists,
+    ordering,
+    removal,
+    rows,
+    sizes,
+    waiting,
+)
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -45,6 +54,9 @@ APPENDED = "<appended>"  # field of a list: the length of the list before the fi
 MOVING = frozenset(
     ["insert", "appendleft", "extendleft", "sort"]
 )  # methods that move the elements of a sequence
+# methods that remove every element that is, or is not, in another container
+REMOVING_EACH = ("difference_update", "intersection_update")
+MISSING = ("ValueError", "KeyError")  # the exceptions of `remove` of a list and a set
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
@@ -72,7 +84,7 @@ def mutate(
         return
     _prepare(ctx, base, name, plain, frame, call)
     if name == "clear":
-        removal.empty(ctx, base, removal.decision(ctx, frame, call.slot, counts=base.deps))
+        removal.empty(ctx, base, removal.decision(ctx, frame, call.slot, base=base.deps))
         shorten(ctx, base, frame, call)
     elif name == "setdefault" and len(plain) > 1:
         _set_default(ctx, base, plain[0], through_statement(ctx, plain[1], frame, call))
@@ -119,27 +131,16 @@ def _prepare(
 
     A set ignores an added element that equals another element.
     """
-    decided = removal.decision(ctx, frame, call.slot, counts=base.deps) if name in MOVING else None
-    added = frozenset[int]().union(*(_compared(ctx, value) for value in news)) if name == "add" else NONE
+    decided = removal.decision(ctx, frame, call.slot, base=base.deps) if name in MOVING else None
+    added = NONE
+    for value in news if name == "add" else ():
+        others = join(elements_of_any(ctx, base), value)
+        added |= equality.decides(ctx, value, others, frame, call.pos)
     for obj in base.objects if decided is not None or added else ():
         if obj.kind == "sequence" and decided is not None:
             removal.scatter(ctx, obj, decided, shorter=False)
         elif obj.kind == "sequence":
             sizes.decide_length(ctx, obj, added)
-
-
-def _compared(ctx: Interpreter, value: Value) -> Nodes:
-    """Return the data that decides whether an element equals another one.
-
-    An instance without `__eq__` equals no other element.
-    """
-    own = frozenset(o for o in value.pts if o.kind == "instance" and not _equals(ctx, o))
-    return ctx.use(Value(value.deps, value.pts - own))
-
-
-def _equals(ctx: Interpreter, obj: Obj) -> bool:
-    cls = obj.info.info if isinstance(obj.info, Obj) else None
-    return not isinstance(cls, ClassInfo) or bool(cls.fields) or bool(heap.read_field(ctx, obj, "__eq__").pts)
 
 
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
@@ -330,18 +331,25 @@ def _take_out(ctx: Interpreter, it: Invocation) -> Value:
         waiting.may_be_empty(ctx, it, waiting.RAISED[it.name])
     index = given[0] if given else const(0) if it.name in ("popleft", "get_nowait") else None
     decides = ctx.use(index) if index is not None else NONE
-    decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=it.base.deps)
+    finds = len(given) < 2  # with a default, a missing key is no error
+    decided = removal.decision(ctx, it.frame, it.call.slot, decides, base=it.base.deps, finds=finds)
     removal.take(ctx, it.base, index, decided)
     shorten(ctx, it.base, it.frame, it.call)
     return result
 
 
 def _removed(ctx: Interpreter, it: Invocation) -> Value:
-    """Remove an element by its value. The remaining elements depend on the value. `discard` may find no element."""
-    decides = call_contexts.all_used(ctx, it.arguments) | ctx.use(elements_of_any(ctx, it.base))
-    counts = it.base.deps | (decides if it.name == "discard" else NONE)
-    decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=counts)
+    """Remove elements that equal an argument, or an element of it; comparisons decide which elements are left."""
+    held, decides = elements_of_any(ctx, it.base), NONE
+    for value in it.arguments[0]:
+        given = heap.elements(ctx, value) if it.name in REMOVING_EACH else value
+        for one, other in ((given, held), (held, given)):
+            decides |= equality.decides(ctx, one, other, it.frame, it.call.pos)
+    finds = it.name == "remove"
+    decided = removal.decision(ctx, it.frame, it.call.slot, decides, base=it.base.deps, finds=finds)
     take_any(ctx, it.base, decided, it.frame, it.call)
+    for raises in MISSING if finds else ():
+        ctx.ops.may_fail(ctx, decides, raises, it.frame, named=True)
     return UNKNOWN
 
 
@@ -471,12 +479,12 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
     deps = iterators.lengths(ctx, it.arguments[0])
     ours = [o for value in it.arguments[0] for o in value.pts if sizes.sized(ctx, o)]
     node = ctx.node(it.frame, ("length", it.call.slot), "call")
-    ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
+    ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node, counted=True)
     if ctx.graph.control[node]:
         ctx.graph.counts.setdefault(node, set()).update(made_of(ctx, Value(pts=frozenset(ours))))
     # equal keys count once, so the keys of a mapping decide its length, as the elements of a set do
     keys = [ctx.store.get((o, heap.KEYS)) for o in ours if o.kind == "mapping"]
-    deps = deps.union(*(held.deps for held in keys if held is not None))
+    deps = deps.union(*(ctx.graph.without_removals(held.deps) for held in keys if held is not None))
     exact = sizes.counts(ctx, it.frame)
     elements = sizes.constants if ctx.exact else sizes.unpacked
     known = [elements(ctx, value) for value in it.arguments[0] if exact]
@@ -522,7 +530,7 @@ READERS: Mapping[str, Callable[..., Value]] = {
     "__getitem__": _read_get,
     "__setitem__": _write_entry,
     **dict.fromkeys(("pop", "popleft", "get_nowait", "popitem"), _take_out),
-    **dict.fromkeys(("remove", "discard"), _removed),
+    **dict.fromkeys(("remove", "discard", *REMOVING_EACH), _removed),
     "reverse": _reversed,
     **dict.fromkeys(("next", "__next__"), next_element),
     **dict.fromkeys(("qsize", "empty", "full"), _read_length),

@@ -29,6 +29,6 @@ def popped(ctx: Interpreter, it: Invocation) -> Value:
     base = it.arguments[0][0]
     result = ordering.ordered(ctx, containers.elements_of_any(ctx, base), it)
     decides = ctx.use(Value(result.deps))
-    decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=base.deps)
+    decided = removal.decision(ctx, it.frame, it.call.slot, decides, base=base.deps)
     containers.take_any(ctx, base, decided, it.frame, it.call)
     return Value(result.deps | base.deps, result.pts, result.consts)

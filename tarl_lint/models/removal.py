@@ -11,8 +11,9 @@ from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.value_flow_graph import WHICH
 from tarl_lint.memory.values import ABSENT, BOTTOM, NONE, Nodes, Obj, Value, join, join_all, pointer
-from tarl_lint.models import sizes
+from tarl_lint.models import equality, sizes
 
 CONTAINERS = frozenset(["sequence", "mapping"])
 
@@ -26,13 +27,22 @@ class Decision:
 
 
 def decision(
-    ctx: Interpreter, frame: Frame, slot: Hashable, decides: Nodes = NONE, *, counts: Nodes = NONE
+    ctx: Interpreter,
+    frame: Frame,
+    slot: Hashable,
+    decides: Nodes = NONE,
+    *,
+    base: Nodes = NONE,
+    finds: bool = True,
 ) -> Decision:
-    """Return the nodes that decide a removal: its conditions and `decides`. The length also depends on `counts`."""
-    left = ctx.node(frame, ("moved", slot), "call")
-    ctx.graph.flow(decides | counts, left)
-    length = ctx.node(frame, ("taken", slot), "call")
-    ctx.graph.flow(counts, length)
+    """Return the nodes that decide a removal: its conditions, the receiver `base`, and `decides`.
+
+    `decides` selects the removed element by a comparison or an index. What is left therefore depends on it as on the
+    condition of an `if` around the removal, and not as on data. The length depends on it only if `finds` is False,
+    that is, if the call may remove nothing.
+    """
+    left = equality.selected(ctx, frame, ("moved", slot), decides | base, WHICH)
+    length = equality.selected(ctx, frame, ("taken", slot), base if finds else decides | base)
     return Decision(ctx.reached(left), ctx.reached(length))
 
 
@@ -96,7 +106,7 @@ def scatter(ctx: Interpreter, obj: Obj, decided: Decision = UNDECIDED, *, shorte
     whole = _marked(join_all([heap.content(ctx, obj), *stored.values()]), decided)
     ordered = obj.kind == "sequence"
     for name, value in stored.items():
-        ctx.store.put((obj, name), join(value, whole) if ordered else _marked(value, decided))
+        ctx.store.put((obj, name), join(value, whole) if ordered else _perhaps(value, decided))
     if decided.left or (stored and ordered):
         held = heap.content(ctx, obj)
         ctx.store.put((obj, ANY), join(held, whole) if ordered else _marked(held, decided))
@@ -141,6 +151,11 @@ def _count(ctx: Interpreter, obj: Obj, decided: Decision) -> None:
         sizes.decide_length(ctx, obj, decided.length)
     if decided.left and obj.kind == "mapping":
         updates.weaken(ctx, obj, KEYS, Value(decided.left))
+
+
+def _perhaps(value: Value, decided: Decision) -> Value:
+    """Return the value of an entry that may have been removed."""
+    return join(value, Value(decided.left)) if decided.left else value
 
 
 def _marked(value: Value, decided: Decision) -> Value:

@@ -18,7 +18,7 @@ def of(ctx: Interpreter, source: Value) -> list[Value]:
     """Return the different elements that iteration over containers may yield; [] if they are unknown, or too many."""
     if not source.pts or any(o.kind not in CONTAINERS for o in source.pts):
         return []
-    return parts(heap.elements(ctx, source))
+    return parts(ctx, heap.elements(ctx, source))
 
 
 def hold_classes(ctx: Interpreter, source: Value) -> bool:
@@ -32,8 +32,11 @@ def hold_classes(ctx: Interpreter, source: Value) -> bool:
     return False
 
 
-def parts(value: Value) -> list[Value]:
-    """Return a value's different objects and constants; [] if unknown or fewer than two."""
+def parts(ctx: Interpreter, value: Value) -> list[Value]:
+    """Return a value's different objects and constants; [] if unknown or fewer than two.
+
+    The conditions of the value decide which constants there are, so each constant depends on them.
+    """
     constants = value.keys()
     if not 1 < len(value.pts) + len(constants or ()) <= MAX_ROWS or (constants is None and not value.pts):
         return []
@@ -41,7 +44,8 @@ def parts(value: Value) -> list[Value]:
         Value(value.deps, frozenset([o]), None if constants is None else BOTTOM.consts) for o in value.objects
     ]
     names = sorted(constants or (), key=lambda one: (type(one).__name__, repr(one)))
-    return found + [Value(value.deps, consts=frozenset([name])) for name in names]
+    deps = frozenset(map(ctx.graph.one_of, value.deps)) if names else value.deps
+    return found + [Value(deps, consts=frozenset([name])) for name in names]
 
 
 def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:

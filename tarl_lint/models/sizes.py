@@ -22,9 +22,10 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
+from tarl_lint.models import equality
 
 MAX_KNOWN = 16  # maximum number of elements tracked separately in a computed sequence
-COMBINING = frozenset(["+", "*", "|", "-", "&"])
+COMBINING = frozenset(["+", "*", "|", "-", "&", "-="])
 
 
 def combined(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value | None:
@@ -55,6 +56,8 @@ def repeated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: F
 
 def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
     """Return `a + b`. Its elements are tracked separately if the elements of both operands are known."""
+    if expr.operator.startswith("-"):
+        return difference(ctx, expr, values, frame)
     known = [unpacked(ctx, v) for v in values]
     element = join_all(heap.elements(ctx, v) for v in values)
     longer = length(ctx, values[0]) | length(ctx, values[1])
@@ -67,6 +70,19 @@ def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], fram
             ctx.store.put((obj, item_field(number)), value)
     ctx.store.put((obj, LENGTH), Value(longer))
     return Value(values[0].deps | values[1].deps, frozenset([obj]))
+
+
+def difference(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
+    """Return `a - b`: the elements of `a`; comparisons with those of `b` decide which ones, and how many."""
+    first, second = (heap.elements(ctx, value) for value in values)
+    decides = NONE.union(*(value.deps for value in values), *(length(ctx, value) for value in values))
+    for one, other in ((first, second), (second, first)):
+        decides |= equality.decides(ctx, one, other, frame, expr.pos)
+    left = ctx.reached(equality.selected(ctx, frame, ("left", expr.pos), decides))
+    obj = recency.allocate(ctx, "sequence", frame, ("combined", expr.pos))
+    updates.add_element(ctx, pointer(obj), Value(first.deps | left, first.pts, first.consts))
+    ctx.store.put((obj, LENGTH), Value(left))
+    return Value(values[0].deps, frozenset([obj]))
 
 
 def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:

@@ -6,7 +6,7 @@ import pytest
 
 from tarl_lint.memory import value_flow_graph
 from tarl_lint.memory.carry_nodes import settle
-from tarl_lint.memory.value_flow_graph import MANY, MANY_CARRIERS, MERGED, Place
+from tarl_lint.memory.value_flow_graph import MANY, MANY_CARRIERS, MERGED, WHICH, Place
 
 AT = (0, 0, 0, 0)
 
@@ -204,3 +204,31 @@ def test_node_copy_can_replace_a_branch_condition(graph, node):
     assert graph.data[copy] == {read}
     assert graph.under(read, 3, frozenset([(5, True)])) == copy
     assert graph.under(read, 4, frozenset()) == read
+
+
+def test_a_count_does_not_depend_on_which_element_was_removed(graph, node):
+    compared, decision = node("compared"), node("if")
+    removed = node("a", (compared, WHICH), (decision, "then"))
+    count, elements = node("count"), node("elements")
+    graph.choice([removed], count, counted=True)
+    graph.choice([removed], elements)
+    assert graph.gates[next(iter(graph.control[count]))] == (removed, {(decision, "then")})
+    assert len(graph.gates[next(iter(graph.control[elements]))][1]) == 2
+    assert graph.without_removals(frozenset([removed, decision])) == {decision}
+
+
+def test_only_removals_are_left_out_of_a_count(graph, node):
+    removed = node("a", (node("compared"), WHICH))
+    graph.choice([removed], node("count"), counted=True)
+    assert graph.control[node("count")] == set()
+
+
+def test_one_of_several_constants_keeps_its_conditions_as_data(graph, node):
+    decision = node("if")
+    chosen = node("a", (decision, "then"))
+    one = graph.one_of(chosen)
+    assert graph.control[one] == set()
+    (inner,) = graph.data[one]
+    assert graph.gates[next(iter(graph.control[inner]))] == (chosen, {(decision, "then")})
+    assert graph.one_of(chosen) == one
+    assert {one, inner} <= graph.copies
