@@ -46,8 +46,9 @@ class Registered:
     """The calls that register a root, as nodes that depend on the conditions of these calls."""
 
     node: int | None = None  # the node on which the root's publish calls depend
-    ways: set[int] = field(default_factory=set)
-    plain: set[Hashable] = field(default_factory=set)  # places of calls without conditions
+    # node of a call → the roots that make it
+    ways: dict[int, set[Hashable]] = field(default_factory=dict)
+    plain: bool = False  # whether it is registered outside the code, and therefore without conditions
 
 
 @dataclass(slots=True, eq=False)
