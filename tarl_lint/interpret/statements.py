@@ -107,7 +107,7 @@ def unpack(
         bind_target(ctx, item, part, frame, f"{slot}.{number}", expr)
         if starred is None or number < starred:
             nullness.note_taken(ctx, item, value, number, part, frame)
-        place = number if starred is None or number < starred else number - len(target.items)
+        place = unpacking.place(number, len(target.items), starred)
         tags.note_element(ctx, item, value, place, f"{slot}.{number}", frame)
 
 
@@ -130,7 +130,8 @@ def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> Non
         parts = unpacking.parts(ctx, value, len(target.items), starred, frame, str(target.pos))
         for number, item in enumerate(target.items):
             assign(ctx, item, parts[number], frame)
-            tags.note_element(ctx, item, value, number, f"{target.pos}.{number}", frame)
+            place = unpacking.place(number, len(target.items), starred)
+            tags.note_element(ctx, item, value, place, f"{target.pos}.{number}", frame)
     elif isinstance(target, ir.Starred):
         assign(ctx, target.value, value, frame)
 

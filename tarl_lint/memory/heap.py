@@ -373,7 +373,7 @@ def attribute_names(ctx: Interpreter, obj: Obj) -> Value | None:
     cls = obj.info if obj.kind == "instance" and obj.name != MEMBER else None
     if not isinstance(cls, Obj) or any(_iterates(one.info) for one in lineage(cls)):
         return None
-    if attribute_of_item(obj, "name") != "name" or content(ctx, obj) is not BOTTOM:
+    if not items_are_attributes(obj) or content(ctx, obj) is not BOTTOM:
         return None
     if any(through_class(ctx, obj, cls, name) is not None for name in ("__iter__", "__getitem__")):
         return None
@@ -421,6 +421,11 @@ def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
         return value
     deps = ctx.graph.through(value.deps, carriers) | carriers
     return Value(deps, value.pts, value.consts)
+
+
+def items_are_attributes(obj: Obj) -> bool:
+    """Return whether an object also stands for its `vars()`, whose items are its attributes."""
+    return attribute_of_item(obj, "name") == "name"
 
 
 def attribute_of_item(obj: Obj, key: object) -> str:

@@ -240,7 +240,7 @@ def absorb(ctx: Interpreter, obj: Obj, value: Value, expr: ir.Expr | None = None
         certain = frozenset(item_field(text) for text in texts)
     for source in value.objects:
         ctx.store.look(source)
-        attributes = source.kind == "instance" and heap.attribute_of_item(source, "name") == "name"
+        attributes = source.kind == "instance" and heap.items_are_attributes(source)
         for name in list(source.fields):
             stored = ctx.store.get((source, name))
             if stored is not None and attributes and name.isidentifier():

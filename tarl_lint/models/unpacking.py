@@ -71,6 +71,11 @@ def parts(
     return [*known[:starred], pointer(rest), *known[end:]]
 
 
+def place(number: int, count: int, starred: int | None) -> int:
+    """Return the index of the element that one of several targets gets; from the end for a target after a star."""
+    return number if starred is None or number < starred else number - count
+
+
 def listed_parts(ctx: Interpreter, element: Value, frame: Frame, slot: str) -> Value:
     """Return a sequence of the values that an analysed object yields."""
     obj = recency.allocate(ctx, "sequence", frame, ("parts", slot))

@@ -300,6 +300,7 @@ def test_iteration_over_attributes_yields_their_names(ctx):
 def test_items_of_dunder_dict_are_attributes(ctx, external, field):
     obj = an_instance(ctx, a_class(ctx, "A", external=external))
     assert heap.attribute_of_item(obj, "x") == field
+    assert heap.items_are_attributes(obj) is (field == "x")
     assert heap.attribute_of_item(obj, 0) == item_field(0) == "[0]"
     assert heap.attribute_of_item(made(ctx, "mapping", "m"), "x") == "['x']"
 

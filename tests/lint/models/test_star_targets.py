@@ -76,6 +76,28 @@ while waiting():
         x, *others = rest
         out.publish(x)  # clean
         out.publish(others[0])  # pose:data
+### tags behind a star
+def scan(msg):
+    jobs.put((1.0, msg.data, "scan"))
+def pose(msg):
+    jobs.put((msg.data, "pose"))
+while waiting():
+    first, *_, kind = jobs.get()
+    if kind == "scan":
+        out.publish(first)  # clean
+    *(start, *rest, which), = jobs.get()
+    if which == "scan":
+        out.publish(start)  # clean
+        out.publish(rest)  # scan:data
+### tags behind a star in a comprehension
+kept = []
+def scan(msg):
+    kept.append((1.0, msg.data, "scan"))
+def pose(msg):
+    kept.append((msg.data, "pose"))
+while waiting():
+    out.publish([first for first, *_, kind in kept if kind == "scan"])  # clean
+    out.publish([first for first, *_, kind in kept if kind == "pose"])  # pose:data
 ### tagged tuples with match
 def scan(msg):
     jobs.put(("scan", msg.data, 1.0))
