@@ -15,6 +15,7 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join_all, lineage, pointer
 from tarl_lint.models import containers, type_queries
 from tarl_lint.models.rows import MAX_MEMBERS
+from tarl_lint.models.text_ends import ends
 
 OURS = frozenset(["instance", "class", "closure", "module"])
 
@@ -28,7 +29,7 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
             0
         ]  # `reduce(getattr, parts, message)` returns a part of the message; storing into it fills the message
     if not names and len(it.call.arguments) > 1:
-        return _method_by_beginning(ctx, it) or _any_part(ctx, it)
+        return _with_ends(ctx, it) or _any_part(ctx, it)
     if len(plain) > 2 and names and all(type_queries.lacks(ctx, plain[0], name) for name in names):
         return plain[2]
     found = [
@@ -72,21 +73,29 @@ def _written(it: Invocation, name: str, number: int = 0) -> ir.Attribute:
     return ir.Attribute(base, name, it.call.pos, 1000 * (abs(it.call.slot) + 1) + number)
 
 
-def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
-    """Return the methods that `getattr(self, "do_" + verb)` may return; None if they are unknown."""
+def _with_ends(ctx: Interpreter, it: Invocation) -> Value | None:
+    """Return the attributes that `getattr(self, "do_" + verb)` may return; None if they are unknown."""
     if len(it.arguments[0]) < 2:  # `getattr(*unknown(), *unknown())`
         return None
-    start, (holder, name, *rest) = _beginning(it.call.arguments[1]), it.arguments[0]
+    (holder, name, *rest), known = it.arguments[0], ends(ctx, it.call.arguments[1], it.frame)
     found = BOTTOM
-    for obj in holder.objects if len(start) > 1 else ():
-        for cls in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
-            ctx.store.reads.look(cls)
-            for member in [n for n in cls.fields if n.startswith(start)]:
-                found = join_all([found, heap.read_field(ctx, obj, member)])
-    if not found.pts:
+    for obj in holder.objects if len(known.start) + len(known.end) > 1 else ():
+        members = sorted(filter(known.fit, _attribute_names(ctx, obj)))
+        found = join_all([found, *(heap.read_field(ctx, obj, member) for member in members)])
+    if found is BOTTOM:
         return None
-    decides = ctx.use(name)
-    return Value(found.deps | decides, join_all([found, *rest]).pts)
+    found = join_all([heap.arrive(ctx, found, holder.deps), *rest])
+    return Value(found.deps | ctx.use(name), found.pts)
+
+
+def _attribute_names(ctx: Interpreter, obj: Obj) -> set[str]:
+    """Return the names of the known attributes of an instance, a class or a module, with those of base classes."""
+    cls = obj.info if obj.kind == "instance" else obj if obj.kind == "class" else None
+    found: set[str] = set()
+    for owner in {obj, *lineage(cls)} if isinstance(cls, Obj) else [obj] if obj.kind == "module" else []:
+        ctx.store.reads.look(owner)
+        found.update(name for name in owner.fields if name.isidentifier())
+    return found
 
 
 def getter(ctx: Interpreter, it: Invocation) -> Value:
@@ -236,17 +245,3 @@ def _names(texts: Sequence[str]) -> set[str] | None:
     except SyntaxError:
         return set()
     return {n.id for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Name)} if trees else None
-
-
-def _beginning(expr: ir.Expr) -> str:
-    """Return the constant beginning of a string computed at run time."""
-    while isinstance(expr, ir.Operation) and expr.parts and expr.operator in ("+", "text", "%"):
-        expr = expr.parts[0]
-    if (
-        isinstance(expr, ir.Call)
-        and isinstance(expr.function, ir.Attribute)
-        and expr.function.name == "format"
-    ):
-        expr = expr.function.base
-    text = expr.value if isinstance(expr, ir.Const) else ""
-    return text.partition("%")[0].partition("{")[0] if isinstance(text, str) else ""
