@@ -30,6 +30,7 @@ from tarl_lint.models import (
     containers,
     drawings,
     environment,
+    files_by_path,
     filling,
     fixed_numbers,
     logging_handlers,
@@ -175,7 +176,9 @@ def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
 def _unknown_method(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
-    if (text := _of_text(ctx, base, name, arguments, frame, call)) is not None:
+    it = Invocation(name, base, arguments, frame, call)
+    text = files_by_path.call_path(ctx, it) or _of_text(ctx, base, name, arguments, frame, call)
+    if text is not None:
         return text
     if (drawing := drawings.drawn_into(ctx, base, arguments, frame, call)) is not None:
         return drawing
