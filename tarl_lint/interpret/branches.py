@@ -8,6 +8,7 @@ from tarl_lint.interpret import dunder_methods, expressions, operators, tags
 from tarl_lint.interpret.budget import MAX_NESTED_ROWS, MAX_ROWS, MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import leaving
 from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
@@ -111,8 +112,16 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         head = again
     frame.heads[(s.id, *frame.turn)] = head
     if ctx.config.arrivals and s.target is None:
-        frame.blocked.update(dict.fromkeys(ctx.kept(ctx.condition(frame, s))))
+        _may_not_end(ctx, s, frame)
     return _loop_end(ctx, s, done, table["break"], frame)
+
+
+def _may_not_end(ctx: Interpreter, s: ir.Loop, frame: Frame) -> None:
+    """Let what follows the call of this function depend on the end of a `while`: its condition, or what leaves it."""
+    frame.blocked.update(dict.fromkeys(ctx.kept(ctx.condition(frame, s))))
+    for one in leaving(s.body) if s.endless else ():
+        for decision, _ in ctx.branches(frame, one):
+            frame.blocked.update(dict.fromkeys(ctx.kept(decision)))
 
 
 def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:

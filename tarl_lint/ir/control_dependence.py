@@ -242,8 +242,8 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
             graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
             if graph.waits and s.target is None:
                 graph.link(s.id, "never", EXIT)
-        elif not _breaks(s.body):
-            graph.link(s.id, "never", EXIT)  # needed so that every statement reaches the exit
+        elif graph.waits or not _breaks(s.body):
+            graph.link(s.id, "never", EXIT)  # also needed so that every statement reaches the exit
     elif isinstance(s, ir.Try):
         return _try(graph, s, follow, exits)
     elif isinstance(s, ir.With):
@@ -330,6 +330,17 @@ def _breaks(body: Sequence[ir.Stmt]) -> bool:
         elif any(_breaks(b) for b in _bodies(s)):
             return True
     return False
+
+
+def leaving(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
+    """Yield the statements that leave a loop: `break` of the loop itself, and each `return`."""
+    for s in body:
+        if isinstance(s, ir.Return) or (isinstance(s, ir.Jump) and s.kind == "break"):
+            yield s
+        elif isinstance(s, ir.Loop):
+            yield from (one for one in _all(s.body) if isinstance(one, ir.Return))
+        for inner in _bodies(s):
+            yield from leaving(inner)
 
 
 def _returns(body: Sequence[ir.Stmt]) -> bool:

@@ -37,6 +37,45 @@ def other(event):
 rospy.Subscriber("in", Float64, on)
 rospy.Timer(1, step)
 rospy.Timer(1, other)
+### loops that only what is inside them ends
+level = 0.0
+def on(msg):
+    global level
+    level = msg.data
+def step(event):
+    while True:
+        if level > 1.0:
+            break
+        rospy.sleep(0.1)
+    out.publish(1.0)  # clean control
+def wait():
+    while True:
+        if level > 1.0:
+            break
+        rospy.sleep(0.1)
+def wait_inside():
+    while True:
+        for limit in (1.0, 2.0):
+            if level > limit:
+                return
+        rospy.sleep(0.1)
+def once():
+    while True:
+        if level > 1.0:
+            rospy.loginfo("high")
+        break
+def other(event):
+    once()
+    out.publish(2.0)  # clean clean
+    wait()
+    out.publish(3.0)  # clean control
+def third(event):
+    wait_inside()
+    out.publish(4.0)  # clean control
+rospy.Subscriber("in", Float64, on)
+rospy.Timer(1, step)
+rospy.Timer(1, other)
+rospy.Timer(1, third)
 ### the first message
 last = None
 def on(msg):
