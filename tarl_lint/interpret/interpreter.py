@@ -340,7 +340,7 @@ class Interpreter:
         slot: Hashable,
         role: str,
         pos: ir.Pos | None = None,
-        conditions: Iterable[tuple[int, str]] = (),
+        conditions: Collection[tuple[int, str]] = (),
     ) -> int:
         """Return the node of a value made by the frame's current statement, perhaps under further conditions."""
         statement = frame.statement
@@ -349,7 +349,9 @@ class Interpreter:
         if known is not None:
             return known
         where = pos or (statement.pos if statement is not None else frame.function.pos)
-        branches = self.branches(frame, statement).union(conditions)
+        branches = self.branches(frame, statement)
+        if conditions:
+            branches = branches.union(conditions)
         return self.graph.node(key, Place(frame, statement, role, where), branches)
 
     def gathered(self, key: Key, value: Value) -> Value:

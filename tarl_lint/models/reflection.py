@@ -80,7 +80,7 @@ def _with_ends(ctx: Interpreter, it: Invocation) -> Value | None:
     (holder, name, *rest), known = it.arguments[0], ends(ctx, it.call.arguments[1], it.frame)
     found = BOTTOM
     for obj in holder.objects if len(known.start) + len(known.end) > 1 else ():
-        members = sorted(filter(known.fit, _attribute_names(ctx, obj)))
+        members = filter(known.fit, _attribute_names(ctx, obj))
         found = join_all([found, *(heap.read_field(ctx, obj, member) for member in members)])
     if found is BOTTOM:
         return None
@@ -88,14 +88,14 @@ def _with_ends(ctx: Interpreter, it: Invocation) -> Value | None:
     return Value(found.deps | ctx.use(name), found.pts)
 
 
-def _attribute_names(ctx: Interpreter, obj: Obj) -> set[str]:
+def _attribute_names(ctx: Interpreter, obj: Obj) -> list[str]:
     """Return the names of the known attributes of an instance, a class or a module, with those of base classes."""
     cls = obj.info if obj.kind == "instance" else obj if obj.kind == "class" else None
-    found: set[str] = set()
-    for owner in {obj, *lineage(cls)} if isinstance(cls, Obj) else [obj] if obj.kind == "module" else []:
+    found: dict[str, None] = {}
+    for owner in [obj, *lineage(cls)] if isinstance(cls, Obj) else [obj] if obj.kind == "module" else []:
         ctx.store.reads.look(owner)
-        found.update(name for name in owner.fields if name.isidentifier())
-    return found
+        found.update(dict.fromkeys(name for name in owner.fields if name.isidentifier()))
+    return list(found)
 
 
 def getter(ctx: Interpreter, it: Invocation) -> Value:
