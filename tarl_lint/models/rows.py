@@ -35,17 +35,18 @@ def hold_classes(ctx: Interpreter, source: Value) -> bool:
 def parts(ctx: Interpreter, value: Value) -> list[Value]:
     """Return a value's different objects and constants; [] if unknown or fewer than two.
 
-    The conditions of the value decide which constants there are, so each constant depends on them.
+    The conditions of the value decide which of them there are, so each depends on the conditions.
     """
     constants = value.keys()
     if not 1 < len(value.pts) + len(constants or ()) <= MAX_ROWS or (constants is None and not value.pts):
         return []
+    conditions = frozenset(map(ctx.graph.one_of, value.deps))
     found = [
-        Value(value.deps, frozenset([o]), None if constants is None else BOTTOM.consts) for o in value.objects
+        Value(value.deps | conditions, frozenset([o]), None if constants is None else BOTTOM.consts)
+        for o in value.objects
     ]
     names = sorted(constants or (), key=lambda one: (type(one).__name__, repr(one)))
-    deps = frozenset(map(ctx.graph.one_of, value.deps)) if names else value.deps
-    return found + [Value(deps, consts=frozenset([name])) for name in names]
+    return found + [Value(conditions, consts=frozenset([name])) for name in names]
 
 
 def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:

@@ -130,7 +130,7 @@ s = {1.0, 2.0}
 out.publish(s | {msg.data})  # data
 out.publish(len(s | {3.0}))  # clean
 out.publish(s & {3.0})  # clean
-out.publish(s - {msg.data})  # data
+out.publish(s - {msg.data})  # control
 out.publish({1.0}.union([msg.data]))  # data
 s.add(msg.data)
 out.publish(s.pop())  # data

@@ -8,6 +8,8 @@ from tarl_lint.catalog import IN_THREADS
 from tarl_lint.models.behaviour_trees import CHECKS, COMPARISON, COMPOSITES, CONSTANTS, DECORATORS
 from tarl_lint.models.blackboards import CLIENTS, GETTERS, SETTERS
 from tarl_lint.models.element_trees import SUBELEMENTS, TREES
+from tarl_lint.models.files_by_path import OPENING, READING, RESOLVING, WRITING
+from tarl_lint.models.files_by_path import PATHS as PATH_CLASSES
 from tarl_lint.models.library_functions import BUILTIN
 from tarl_lint.models.smach import MACHINES
 from tests.lint.models.marked import differing, in_callback
@@ -54,6 +56,32 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME("RATE", 1.0))  # clean
         out.publish(NAME("RATE", "fast"))  # clean
         out.publish(NAME(msg.name, "fast"))  # data
+    """,
+    OPENING: """
+        with NAME("/tmp/a.txt", "w") as f:
+            f.write(msg.text)
+        with NAME("/tmp/a.txt") as f:
+            out.publish(f.read())  # data
+        with NAME("/tmp/b.txt") as f:
+            out.publish(f.read())  # clean
+    """,
+    (*PATH_CLASSES, *RESOLVING): """
+        with open(NAME("/tmp/a.txt"), "w") as f:
+            f.write(msg.text)
+        out.publish(open("/tmp/a.txt").read())  # data
+        out.publish(open(NAME("/tmp/b.txt")).read())  # clean
+    """,
+    tuple(WRITING): """
+        import cv2, numpy
+        NAME("/tmp/a.npy", msg.data)
+        out.publish(numpy.load("/tmp/a.npy"))  # data
+        out.publish(cv2.imread("/tmp/b.npy"))  # clean
+    """,
+    READING: """
+        import numpy
+        numpy.save("/tmp/a.npy", msg.data)
+        out.publish(NAME("/tmp/a.npy"))  # data
+        out.publish(NAME("/tmp/b.npy"))  # clean
     """,
     ("list", "tuple", "deque"): """
         kept = NAME([0.0, msg.data])

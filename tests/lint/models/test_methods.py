@@ -83,6 +83,19 @@ READ: dict[tuple[str, ...], str] = {
             other.NAME()
         out.publish(other[0])  # control
     """,
+    ("difference_update", "intersection_update"): """
+        kept = {0.0, 1.0}
+        if msg.data > 0.0:
+            kept.NAME({0.0})
+        out.publish(len(kept))  # control
+        out.publish(max(kept))  # control
+        other = {0.0, 1.0}
+        other.NAME({0.0})
+        out.publish(len(other))  # clean
+        third = {0.0, 1.0}
+        third.NAME(msg.items)
+        out.publish(len(third))  # control
+    """,
     ("remove", "discard"): """
         kept = [0.0, 1.0]
         if msg.data > 0.0:
