@@ -7,7 +7,7 @@ from typing import Final
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory import heap
+from tarl_lint.memory import heap, namespaces
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join
 
@@ -58,7 +58,8 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
         return None
     first, rest = values[0], list(values[1:])
     if name == "contains":
-        return special(ctx, rest[0], "__contains__", [first], frame, expr.pos)
+        said = special(ctx, rest[0], "__contains__", [first], frame, expr.pos)
+        return namespaces.contains(ctx, rest[0], first, frame, expr.pos) if said is None else said
     made = None
     if operator not in METHOD_OF:
         made = special(ctx, first, f"__i{name}__", rest, frame, expr.pos)

@@ -230,7 +230,7 @@ def element(ctx: Interpreter, obj: Obj, key: object) -> Value:
         return known[key] if known and -key <= len(known) else heap.read_any(ctx, obj)
     if obj.kind == "sequence" and ctx.store.get((obj, name)) is None and heap.content(ctx, obj) is BOTTOM:
         return BOTTOM
-    value = heap.read_field(ctx, obj, name)
+    value = descriptors.entry(ctx, obj, name) if obj.kind == "instance" else heap.read_field(ctx, obj, name)
     if value is BOTTOM and obj.kind == "mapping" and _makes(ctx, obj):
         return ctx.ops.missing(ctx, obj, name)
     return value

@@ -370,16 +370,21 @@ def attribute_names(ctx: Interpreter, obj: Obj) -> Value | None:
     `vars(obj)` and `obj.__dict__` are represented by the object itself. If a class or base class of the object is
     not analysed, or the object has attributes with computed names, it may iterate in another way.
     """
-    cls = obj.info if obj.kind == "instance" and obj.name != MEMBER else None
-    if not isinstance(cls, Obj) or any(_iterates(one.info) for one in lineage(cls)):
-        return None
-    if not items_are_attributes(obj) or content(ctx, obj) is not BOTTOM:
-        return None
-    if any(through_class(ctx, obj, cls, name) is not None for name in ("__iter__", "__getitem__")):
+    if not is_namespace(ctx, obj) or content(ctx, obj) is not BOTTOM:
         return None
     ctx.store.look(obj)
     names = [n for n in list(obj.fields) if n.isidentifier() and ctx.store.get((obj, n)) is not None]
     return Value(consts=frozenset(names)) if 0 < len(names) <= MAX_TEXTS else UNKNOWN
+
+
+def is_namespace(ctx: Interpreter, obj: Obj) -> bool:
+    """Return whether an object that is used as a container is certainly the `__dict__` of an instance."""
+    cls = obj.info if obj.kind == "instance" and obj.name != MEMBER else None
+    if not isinstance(cls, Obj) or any(_iterates(one.info) for one in lineage(cls)):
+        return False
+    if not items_are_attributes(obj):
+        return False
+    return all(through_class(ctx, obj, cls, name) is None for name in ("__iter__", "__getitem__"))
 
 
 def _iterates(info: object) -> bool:

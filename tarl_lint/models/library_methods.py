@@ -165,12 +165,17 @@ def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
     containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
     given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
     if given_back and target is not None:
-        if it.name == "setdefault" and kind in ("mapping", "closure") and it.arguments[0]:
+        if it.name == "setdefault" and it.arguments[0] and _has_entries(target):
             return ctx.ops.read_item(ctx, it.base, it.arguments[0][0])
         return heap.read_any(ctx, target)
     if kind in ("lib", "") and not dropped(it.frame, it.call):
         return Value(ctx.use(it.base) | call_contexts.all_used(ctx, it.arguments))
     return UNKNOWN
+
+
+def _has_entries(target: Obj) -> bool:
+    """Return whether an object stores values under keys; an instance stands for its `__dict__`, too."""
+    return target.kind in ("mapping", "closure", "instance") or target.name == heap.NAMESPACE
 
 
 def _unknown_method(

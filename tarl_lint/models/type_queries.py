@@ -7,7 +7,7 @@ from types import FunctionType, GeneratorType, MethodType
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
-from tarl_lint.memory import function_attributes, heap
+from tarl_lint.memory import function_attributes, heap, namespaces
 from tarl_lint.memory.message_types import MESSAGE_MODULE
 from tarl_lint.memory.values import (
     BOTTOM,
@@ -18,7 +18,6 @@ from tarl_lint.memory.values import (
     Value,
     const,
     function_of,
-    join_all,
     lineage,
     pointer,
 )
@@ -95,13 +94,8 @@ def has_attribute(ctx: Interpreter, it: Invocation) -> Value:
     if names and all(lacks(ctx, given[0], name) for name in names):
         return const(value=False)
     ours = [o for o in given[0].objects if o.kind == "instance"] if names else []
-    held = [ctx.store.get((obj, name)) for obj in ours for name in names]
-    stored = [value for value in held if value is not None]
-    if not stored:
-        return UNKNOWN
-    node = ctx.node(it.frame, ("has", it.call.slot), "condition")
-    ctx.graph.choice(join_all(stored).deps, node)
-    return Value(ctx.kept(node))
+    decides = namespaces.existence(ctx, ours, names, it.frame, it.call.slot)
+    return Value(decides) if decides is not None else UNKNOWN
 
 
 def lacks(ctx: Interpreter, value: Value, name: str) -> bool:
