@@ -293,6 +293,8 @@ def _walrus(ctx: Interpreter, expr: ir.Walrus, frame: Frame) -> Value:
 def _yield(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
     value = evaluate(ctx, expr.value, frame)
     if expr.kind == "await":
+        # the caller of a coroutine in a task goes on here
+        frame.pauses[expr.pos] = ctx.store.since(frame.depth_of_layers)
         ctx.ops.wait(ctx, frame)
         return _awaited(ctx, value)
     inner, value = value, heap.elements(ctx, value) if expr.kind == "from" else value

@@ -38,7 +38,7 @@ from tarl_lint.models.ros.endpoints import Acceptance, Publisher
 def run(ctx: Interpreter, frame: Frame) -> Value:
     """Execute a frame's body and return its result.
 
-    A generator that never ends leaves the stores that it had made when it paused.
+    A generator or coroutine that never ends leaves the stores that it had made when it paused.
     """
     frame.returns, frame.pauses = [], {}
     depth = len(ctx.store.layers) - 1

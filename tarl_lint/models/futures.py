@@ -9,12 +9,15 @@ from tarl_lint.interpret import calls
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.heap import RESULT, item_field
 from tarl_lint.memory.values import BOTTOM, NONE, UNKNOWN, Value, join, pointer
 from tarl_lint.models import containers, context_managers
 from tarl_lint.models.containers import READERS as CONTAINER_READERS
 from tarl_lint.models.records import RECORDS
+
+MAX_REPEATED: Final = 3  # maximum number of times that the calls of `gather` are evaluated again
 
 
 def _set_result(ctx: Interpreter, it: Invocation) -> Value:
@@ -58,7 +61,14 @@ def _is_done(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def gathered_results(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the results of several coroutines, one by one."""
+    """Return the results of several coroutines, one by one.
+
+    Each coroutine may see what the others store, so their calls are evaluated again, unless they make objects.
+    """
+    running = [one for one in it.call.arguments if isinstance(one, ir.Call) and _makes_nothing(one)]
+    for _ in range(min(len(running) - 1, MAX_REPEATED)):
+        for coroutine in running:
+            ctx.ops.evaluate(ctx, coroutine, it.frame)
     obj = recency.allocate(ctx, "sequence", it.frame, ("gathered", it.call.slot))
     for number, value in enumerate(it.arguments[0]):
         ctx.store.put((obj, item_field(number)), value)
@@ -66,6 +76,18 @@ def gathered_results(ctx: Interpreter, it: Invocation) -> Value:
     if rest is not None:
         updates.add_element(ctx, pointer(obj), rest)
     return pointer(obj)
+
+
+def _makes_nothing(call: ir.Call) -> bool:
+    """Return whether the receiver and the arguments of a call are only names, attributes and constants."""
+    parts = [call.function, *call.arguments, *(value for _, value in call.keywords)]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, ir.Attribute):
+            parts.append(part.base)
+        elif not isinstance(part, (ir.Name, ir.Const)):
+            return False
+    return True
 
 
 def awaited_result(ctx: Interpreter, it: Invocation) -> Value:
