@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.interpret import dunder_methods, expressions, operators, tags
+from tarl_lint.interpret import dunder_methods, exceptions, expressions, operators, tags
 from tarl_lint.interpret.budget import MAX_NESTED_ROWS, MAX_ROWS, MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import leaving
 from tarl_lint.memory import heap, joins
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Attempt, Frame
 from tarl_lint.memory.store import Delta
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join
+from tarl_lint.memory.values import BOTTOM, Value, join
 from tarl_lint.models import context_managers as managers_of_generators
 from tarl_lint.models import object_lists, rows, sizes, unpacking
 
@@ -268,12 +268,16 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
         if target is not None:
             ctx.ops.bind_target(ctx, target, entered, frame, f"with{number}", context)
     ctx.opened += [manager for manager, _ in managers]
+    body = Attempt(len(ctx.store.layers) - 1, [])
+    frame.tries.append(body)
     goes_on = ctx.ops.block(ctx, s.body, frame)
+    frame.tries.pop()
     del ctx.opened[len(ctx.opened) - len(managers) :]
     frame.statement = s
-    # The managers also exit if a `return` leaves the body.
+    # The managers also exit if a `return` or an exception leaves the body.
+    given = exceptions.given_to_exit(ctx, body, frame, s.pos)
     for number, (manager, rest) in reversed([*enumerate(managers)]):
-        _special_of_manager(ctx, manager, managers_of_generators.LEAVING, [UNKNOWN] * 3, frame, s)
+        _special_of_manager(ctx, manager, managers_of_generators.LEAVING, given, frame, s)
         rest = join(rest, managers_of_generators.kept_on_stack(ctx, manager))
         managers_of_generators.leave(ctx, rest, frame, s.pos, number)
     return goes_on

@@ -29,6 +29,7 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame, states: dict[int, Delt
             attempt.states.append(_state(ctx, attempt.depth, states))
         if caught:
             return
+        attempt.passed.append(escape)
     escape.state = _state(ctx, frame.depth_of_layers, states)
     frame.escapes.append(escape)
 
@@ -47,6 +48,19 @@ def _state(ctx: Interpreter, depth: int, states: dict[int, Delta]) -> Delta:
             state = {k: v for k, v in state.items() if k[0] is not obj}
     states[depth] = state
     return state
+
+
+def given_to_exit(ctx: Interpreter, body: Attempt, frame: Frame, pos: ir.Pos) -> list[Value]:
+    """Return the arguments of `__exit__`, which say whether the body of a `with` raised, and what."""
+    node = ctx.node(frame, ("exit", pos), "condition")
+    error = BOTTOM
+    for escape in body.passed:
+        error = join(error, escape.value)
+        publications.under(ctx, frame, escape.statement, node)
+        if escape.decision is not None:
+            ctx.graph.depend(node, (escape.decision,))
+    raised = ctx.kept(node)
+    return [Value(raised), Value(raised | error.deps, error.pts), Value()]
 
 
 def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:

@@ -16,7 +16,7 @@ Turns = tuple[tuple[ir.Loop, int], ...]  # loops, outer ones first, with the num
 
 @dataclass(slots=True, eq=False)
 class Attempt:
-    """A running `try`: what it handles, the states in which a handler can be entered, and the exceptions.
+    """A running `try` or `with`: what it handles, the states in which a handler can be entered, and the exceptions.
 
     `final` is set if no exception, `return`, `break` or `continue` can leave the `try` without its `finally`. In
     this case, `leaving` collects everything that has to continue after the `finally`.
@@ -28,6 +28,7 @@ class Attempt:
     raised: dict[str, Value] = field(default_factory=dict)  # value of each exception, by its name
     final: bool = False
     leaving: list[Leaving] = field(default_factory=list)
+    passed: list[Escape] = field(default_factory=list)  # exceptions that may leave the body of a `with`
 
     def catches(self, name: str, types: ExceptionTypes) -> bool | None:
         """Return whether one of the handlers catches an exception: True, False, or None for maybe."""
