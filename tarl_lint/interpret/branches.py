@@ -45,16 +45,19 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
         return ctx.ops.block(ctx, s.body if way else s.orelse, frame)
     goes_on: list[tuple[tags.Narrowed, Delta]] = []
     before: tags.Narrowed = {}
+    ways: list[tuple[tags.Narrowed, Sequence[ir.Stmt]]] = []
     for body, holds in ((s.body, True), (s.orelse, False)):
         ctx.store.push()
         frame.statement = s
         narrowed = tags.narrow(ctx, s.test, frame, before, holds=holds)
+        ways.append((narrowed, body))
         if narrowed:
             tags.decide(ctx, s, frame, narrowed, holds=holds)
         if ctx.ops.block(ctx, body, frame):
             goes_on.append((narrowed, ctx.store.pop()))
         else:
             ctx.store.pop()
+    tags.settle(s, frame, before, ways)
     if goes_on:
         joins.merge(ctx, [state for _, state in goes_on])
         tags.restore(ctx, before, goes_on)

@@ -19,7 +19,7 @@ from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import generations, heap, joins, library_instances, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
-from tarl_lint.memory.frames import Frame, Origin
+from tarl_lint.memory.frames import Frame, Origin, Spared
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import (
@@ -82,6 +82,7 @@ def invoke(
 def _invoke(
     ctx: Interpreter, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None
 ) -> Value:
+    spared, ctx.spared = ctx.spared, frozenset()
     frame = context_selection.make_frame(ctx, closure, arguments, caller, call, owner)
     if frame is None:
         return _again(ctx, closure, arguments)
@@ -92,6 +93,7 @@ def _invoke(
     _note_arguments(ctx, frame, arguments, caller, call)
     if not frame.guards.issuperset(ctx.guards):
         _decide_call(frame, frozenset(ctx.guards))
+    _spare(frame, spared)
     frame.root_waits = caller.root_waits
     parts: tuple[Origin, ...] = ()
     if (
@@ -151,6 +153,15 @@ def _decide_call(frame: Frame, guards: Branches) -> None:
     if not frame.shared and not guards <= frame.base:
         frame.base |= guards
         frame.closures = {}
+
+
+def _spare(frame: Frame, spared: Spared) -> None:
+    """Leave out decisions that decide no call of a function for its receiver."""
+    if frame.spared is None:
+        frame.spared = spared
+    elif not frame.spared <= spared:
+        frame.spared &= spared
+        frame.recorded = frame.entered = None
 
 
 def _execute(

@@ -8,7 +8,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap, joins
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Frame, Spared
 from tarl_lint.memory.values import (
     BOTTOM,
     NO_CONSTANTS,
@@ -126,7 +126,9 @@ def _call_attribute(
     for number, (obj, member) in enumerate(targets):
         ctx.store.push()
         ctx.guards.append((guard, str(number)))
+        ctx.spared = _spared(function.base, base, obj, frame)
         value = _call_member(ctx, base, obj, member, function.name, arguments, frame, expr)
+        ctx.spared = frozenset()
         ctx.guards.pop()
         result = join(result, value)
         deltas.append(ctx.store.pop())
@@ -140,6 +142,15 @@ def _call_attribute(
         deltas.append(ctx.store.pop())
     joins.merge(ctx, deltas)
     return result
+
+
+def _spared(receiver: ir.Expr, value: Value, obj: Obj, frame: Frame) -> Spared:
+    """Return the decisions about a call that are none if the receiver, a variable, is a certain object."""
+    if not isinstance(receiver, ir.Name) or not frame.settled:
+        return frozenset()
+    known = frame.settled.get((expressions.holder(receiver, frame), receiver.name), ())
+    found = (one.spared for one in known if one.value is value and obj in one.objects)
+    return frozenset[tuple[int, bool]]().union(*found)
 
 
 def _call_member(

@@ -18,7 +18,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
 from tarl_lint.ir.exception_types import exception_types
 from tarl_lint.ir.lower_statements import lower_body
-from tarl_lint.memory.frames import Frame, Turns, inside
+from tarl_lint.memory.frames import Frame, Spared, Turns, inside
 from tarl_lint.memory.shared import Root, Shared
 from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import Graph, Place
@@ -81,6 +81,9 @@ class Interpreter:
         self.doubts: dict[int, dict[Root, None]] = {}
         # conditions inside the current expression (as in `a if b else c`) that decide what is evaluated
         self.guards: list[tuple[int, str]] = []
+        self.spared: Spared = (
+            frozenset()
+        )  # what does not decide the method call that begins, for its receiver
         # implementations of functions with `singledispatch` → names of the types for which they are registered
         self.dispatches: dict[Obj, frozenset[str]] = {}
         self.class_made: Obj | None = None  # the class that the running metaclass creates

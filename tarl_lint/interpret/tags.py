@@ -17,7 +17,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.tag_tests import Test, calls_nothing, of_variable, tags_of, tests
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import enumerations, heap
-from tarl_lint.memory.frames import REST, Former, Frame, Taken
+from tarl_lint.memory.frames import REST, Former, Frame, Settled, Taken
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import NONE, Key, Nodes, Obj, Value, const, lineage, pointer
 
@@ -30,6 +30,7 @@ def note(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, slot:
     """Record that the current statement assigned a value to a variable: `job = queue.get()` or `kind = job[0]`."""
     if not isinstance(target, ir.Name):
         return
+    frame.settled.pop(key_of(target, frame), None)
     if several(value):
         _remember(ctx, target, value, None, slot, frame)
     elif (of := of_variable(source)) is not None:
@@ -116,6 +117,28 @@ def decide(ctx: Interpreter, s: ir.If, frame: Frame, narrowed: Narrowed, *, hold
     for key, now in narrowed.items():
         taken = taken_from(ctx, key, frame)
         ctx.graph.flow((now if taken is None else taken.before).deps, node)
+
+
+def settle(
+    s: ir.If, frame: Frame, before: Narrowed, ways: Sequence[tuple[Narrowed, Sequence[ir.Stmt]]]
+) -> None:
+    """Record the objects for which the test of an `if` is certainly false, or certainly true."""
+    for key, former in before.items():
+        for narrowed, body in ways:
+            objects = former.pts - narrowed[key].pts if key in narrowed else frozenset()
+            if objects:
+                spared = frozenset([(s.id, False), *((number, True) for number in _numbers(body))])
+                frame.settled.setdefault(key, []).append(Settled(former, objects, spared))
+
+
+def _numbers(body: Sequence[ir.Stmt]) -> Iterator[int]:
+    """Yield the numbers of statements and of all statements inside them."""
+    for statement in body:
+        yield statement.id
+        for name in ("body", "orelse", "final"):
+            yield from _numbers(getattr(statement, name, ()))
+        for _, _, inner in getattr(statement, "handlers", ()):
+            yield from _numbers(inner)
 
 
 def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, Delta]]) -> None:

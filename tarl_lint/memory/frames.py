@@ -90,6 +90,22 @@ class Taken:
     frame: Frame | None = None  # the caller that passed the value, if the variable is a parameter
 
 
+Spared = frozenset[tuple[int, bool]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Settled:
+    """Objects for which the test of an `if` has a known result.
+
+    The test decides nothing for these objects, and a branch does not run for them. `spared` has the number of the
+    `if` with False, and those of the statements in the branch with True.
+    """
+
+    value: Value  # the value of the tested variable
+    objects: frozenset[Obj]
+    spared: Spared
+
+
 # an argument that is one of several objects, or a part of one of them. The tuple has the argument's position or
 # keyword, the objects, and the attribute or index of the part.
 Origin = tuple[int | str, Value, str | Value | None]
@@ -138,8 +154,10 @@ class Frame(Obj):
         "returns",
         "root_waits",
         "rows",
+        "settled",
         "shared",
         "slot",
+        "spared",
         "spread",
         "statement",
         "steps",
@@ -176,6 +194,10 @@ class Frame(Obj):
         self.steps: frozenset[ir.Stmt] = frozenset()
         self.answer: object = None  # the object that receives the function's result if ROS calls the function
         self.guards: Branches = frozenset()  # decisions inside the calling expression
+        self.settled: dict[Key, list[Settled]] = {}  # variable → results of tests since its last assignment
+        self.spared: Spared | None = (
+            None  # what decides no call of the function for its receiver; None before a call
+        )
         self.outer: Frame | None = None
         self.owner: Obj | None = None  # the class that defines the method, for super()
         self.cls: Obj | None = None  # the class under construction, if this is a class body
@@ -225,6 +247,7 @@ class Frame(Obj):
         self.heads.clear()
         self.pauses.clear()
         self.taken.clear()
+        self.settled.clear()
         self.spread.clear()
 
     def owner_class(self) -> Obj | None:

@@ -12,7 +12,7 @@ from tarl_lint.interpret.run_order import Part
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import BLOCKED
 from tarl_lint.memory import recency
-from tarl_lint.memory.frames import Frame, Turns, inside
+from tarl_lint.memory.frames import Frame, Spared, Turns, inside
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, pointer
 from tarl_lint.models.ros.endpoints import Acceptance, DefaultName, Publisher, SinkRecord
@@ -172,11 +172,12 @@ def under(
     node: int,
     turns: Turns | None = None,
     but: ir.Loop | None = None,
+    spared: Spared = frozenset(),
 ) -> None:
     """Make a node depend on the conditions of a statement, including those in callers.
 
     `turns` are the iterations of unrolled loops in which the statement runs; they default to the current
-    iterations. Conditions inside the loop `but` are left out.
+    iterations. Conditions inside the loop `but`, and those in `spared`, are left out.
     """
     turns = inside(statement, frame.turns if turns is None else turns)
     whole = ctx.control(frame)
@@ -184,9 +185,12 @@ def under(
     # a `for` evaluates its iterable before it decides whether there is an element
     own = statement.id if isinstance(statement, ir.Loop) and statement.target is not None else None
     for branch in control.direct.get(statement.id, ()):
+        if (branch[0], True) in spared:
+            continue
         if branch[0] != own and (but is None or not but.has(branch[0])):
             decision, _ = ctx.branch(frame, branch, turns)
-            ctx.graph.depend(node, (decision,))
+            if (branch[0], False) not in spared:
+                ctx.graph.depend(node, (decision,))
             _reached(ctx, frame, whole.statements[branch[0]], node, turns)
     if turns:
         loop, _ = turns[-1]
@@ -225,7 +229,7 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     control = ctx.control(caller)
     if frame.entered is not control:
         frame.entered = control
-        under(ctx, caller, call, waypoint, frame.called_in)
+        under(ctx, caller, call, waypoint, frame.called_in, spared=frame.spared or frozenset())
         ctx.graph.depend(waypoint, [n for n, _ in frame.guards])
     ctx.graph.depend(node, (waypoint,))
 
