@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
+from itertools import pairwise
 
 from tarl_lint.interpret import shared_contexts
 from tarl_lint.interpret.budget import (
@@ -17,7 +18,7 @@ from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import generations
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import Obj
+from tarl_lint.memory.values import Obj, Value
 
 
 def make_frame(
@@ -29,7 +30,7 @@ def make_frame(
     function = closure.info[0]
     runs = ctx.work.activations.get(function, 0) + 1
     receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
-    if len(ctx.stack) > MAX_CALLS or _recurs(ctx, function, closure, receiver):
+    if len(ctx.stack) > MAX_CALLS or _recurs(ctx, closure, receiver, arguments):
         return None
     if ctx.work.charged > ctx.work.limit:
         _cut(ctx)
@@ -58,16 +59,39 @@ def make_frame(
     return None if shares and frame in ctx.stack else frame
 
 
-def _recurs(ctx: Interpreter, function: ir.Function, closure: Obj, receiver: frozenset[Obj] | None) -> bool:
+def _recurs(ctx: Interpreter, closure: Obj, receiver: frozenset[Obj] | None, arguments: Arguments) -> bool:
     """Return whether a call is a recursion that is too deep.
 
     A call of the same function for another object, such as a part of a composite, is no recursion. Neither is a
-    call of another closure of the same code.
+    call of another closure of the same code, or a call for an element of a tuple or list of the running call.
     """
-    running = [f.key for f in ctx.stack if f.function is function]
+    function = closure.info[0] if isinstance(closure.info, tuple) else None
+    running = [f for f in ctx.stack if f.function is function]
     if len(running) <= 1 or len(running) > MAX_DELEGATIONS:
         return len(running) > 1
-    return sum(isinstance(key, tuple) and key[3:5] == (closure.key, receiver) for key in running) > 1
+    keys = [frame.key for frame in running]
+    same = sum(isinstance(key, tuple) and key[3:5] == (closure.key, receiver) for key in keys) > 1
+    return same and not _descends(ctx, [*(frame.arguments for frame in running), arguments[0]])
+
+
+def _descends(ctx: Interpreter, calls: Sequence[Sequence[Value]]) -> bool:
+    """Return whether one argument of each nested call is a certain element of that of the call around it."""
+    return any(
+        all(_is_element(ctx, outer, inner) for outer, inner in pairwise(way))
+        for way in zip(*calls, strict=False)
+    )
+
+
+def _is_element(ctx: Interpreter, outer: Value, inner: Value) -> bool:
+    """Return whether a value is one tuple, list or text in a known place of a tuple or list."""
+    if len(outer.pts) != 1 or outer.deps or inner.deps or not (len(inner.pts) == 1 or inner.fixed()):
+        return False
+    (holder,) = outer.pts
+    if holder.kind != "sequence" or holder.many or any(o.kind != "sequence" for o in inner.pts):
+        return False
+    return any(
+        one.pts == inner.pts and one.consts == inner.consts for one in ctx.ops.unpacked(ctx, outer) or ()
+    )
 
 
 def _new_frame(

@@ -34,7 +34,7 @@ def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -
     items = [
         (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
     ]
-    where = pointer(obj)
+    where = Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
     exact, count = True, 0
     for number, (item, value) in enumerate(items):
         value = entry(ctx, item, value, frame, (expr.slot, number))

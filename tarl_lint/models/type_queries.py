@@ -41,6 +41,8 @@ def is_instance(ctx: Interpreter, it: Invocation) -> Value:
     named = [one for part in sizes.unpacked(ctx, given[1]) or [given[1]] for one in part.objects]
     if named and all(one.kind == "class" for one in named):
         return _of_classes(given[0], frozenset(named))
+    if [one.name for one in named] == ["builtins.str"] and (known := _is_text(given[0])) is not None:
+        return const(value=known)
     if not named or not all(one.kind == "ext" and MESSAGE_MODULE in one.name for one in named):
         # the class may be a base class of all messages
         return UNKNOWN
@@ -53,6 +55,15 @@ def is_instance(ctx: Interpreter, it: Invocation) -> Value:
     types = {one.name.rpartition(".")[2] for one in named}
     found = {one in types for one in received}
     return const(found.pop()) if len(found) == 1 else UNKNOWN
+
+
+def _is_text(value: Value) -> bool | None:
+    """Return whether a value is a text; None if that is not known."""
+    constants = value.keys()
+    if constants is None or any(o.kind not in ("sequence", "mapping") for o in value.pts):
+        return None
+    found = {isinstance(one, str) for one in constants} | ({False} if value.pts else set())
+    return found.pop() if len(found) == 1 else None
 
 
 def _of_classes(value: Value, classes: frozenset[Obj]) -> Value:
