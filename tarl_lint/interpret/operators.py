@@ -82,7 +82,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
             dunder_methods.as_text(ctx, value, frame, part.pos)
             for value, part in zip(values, expr.parts, strict=True)
         ]
-    said = dunder_methods.operated(ctx, expr, values, frame) or _among_attributes(ctx, expr, values, frame)
+    said = dunder_methods.operated(ctx, expr, values, frame)
     if said is not None:
         return said
     if expr.operator in ("+=", "|=") and values[0].pts:
@@ -154,23 +154,6 @@ def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> 
     for obj in in_order(mappings):
         deps |= heap.keys(ctx, obj, value.deps).deps
     return deps | chosen(ctx, mappings, frame, ("member", slot), counted=False) if mappings else deps
-
-
-def _among_attributes(
-    ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame
-) -> Value | None:
-    """Return the value of `"name" in vars(obj)`: the conditions of stores decide it; None for other operations."""
-    if expr.operator not in MEMBER:
-        return None
-    name, holder = values
-    ours = [o for o in holder.objects if heap.attribute_names(ctx, o) is not None]
-    if not name.texts() or not ours or len(ours) < len(holder.pts):
-        return None
-    node = ctx.node(frame, ("among", expr.pos), "condition")
-    for obj in ours:
-        held = [ctx.store.get((obj, text)) for text in name.texts()]
-        ctx.graph.choice(NONE.union(*(one.deps for one in held if one is not None)), node)
-    return Value(name.deps | ctx.kept(node))
 
 
 def chosen(
