@@ -181,6 +181,29 @@ ELEMENTS: Final[Mapping[str, Mapping[str, str]]] = {
     "Marker": {"points[]": "Point", "colors[]": "ColorRGBA"},
     "MarkerArray": {"markers[]": "Marker"},
 }
+# types whose fields that contain numbers contain whole numbers
+WHOLE: Final = frozenset(f"{name}{part}" for name in NUMBERS if "Int" in name for part in ("", "MultiArray"))
+# type → its fields that contain a number, or, as `field[]`, a list of numbers
+NUMBER_FIELDS: Final[Mapping[str, frozenset[str]]] = {
+    **{name: frozenset(["data"]) for name in ("Bool", "Float32", "Float64", *WHOLE) if name in NUMBERS},
+    **{f"{name}MultiArray": frozenset(["data[]"]) for name in _ARRAYS if name != "Byte"},
+    **{
+        name: frozenset(FIELDS[name])
+        for name in ("Point", "Point32", "Vector3", "Quaternion", "Pose2D", "ColorRGBA")
+    },
+    "LaserScan": frozenset(
+        ["angle_min", "angle_max", "angle_increment", "range_min", "range_max", "ranges[]"]
+    ),
+    "JointState": frozenset(["position[]", "velocity[]", "effort[]"]),
+    "Joy": frozenset(["axes[]", "buttons[]"]),
+    "Range": frozenset(["field_of_view", "min_range", "max_range", "range"]),
+    "Temperature": frozenset(["temperature"]),
+    "NavSatFix": frozenset(["latitude", "longitude", "altitude"]),
+    "BatteryState": frozenset(["voltage", "temperature", "current", "charge", "capacity", "percentage"]),
+    "AckermannDrive": frozenset(
+        ["steering_angle", "steering_angle_velocity", "speed", "acceleration", "jerk"]
+    ),
+}
 
 
 def _camera(names: str) -> dict[str, str]:

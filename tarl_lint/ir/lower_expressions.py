@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.number_tests import shown
 from tarl_lint.ir.scopes import Scope
 
 OPERATORS: dict[type[ast.AST], str] = {
@@ -61,6 +63,16 @@ class Expressions:
         self.module = module
         # first argument of the latest call of a function that may stop before the end of this argument
         self.lazy: ast.expr | None = None
+        self.numbers = frozenset[
+            str
+        ]()  # variables that a test around the current expression has shown to be numbers
+
+    @contextmanager
+    def knowing(self, numbers: frozenset[str]) -> Iterator[None]:
+        """Lower a part of the program in which further variables are known to be numbers."""
+        before, self.numbers = self.numbers, self.numbers | numbers
+        yield
+        self.numbers = before
 
     def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:
         """Lower one expression; an expression without a form of its own becomes an operation on its parts."""
@@ -95,7 +107,14 @@ class Expressions:
         if isinstance(node.func, ast.Name) and node.func.id in SHORT_CIRCUITS and node.args:
             self.lazy = node.args[0]
         keywords = [(k.arg, self.expr(k.value, scope)) for k in node.keywords]
-        return ir.Call(function, self.all(node.args, scope), keywords, position(node), scope.next())
+        arguments, certain = self.all(node.args, scope), self._certain(node)
+        return ir.Call(function, arguments, keywords, position(node), scope.next(), certain)
+
+    def _certain(self, node: ast.Call) -> bool:
+        """Return whether a call converts a number into a number."""
+        one = node.args[0] if len(node.args) == 1 else None
+        plain = isinstance(node.func, ast.Name) and node.func.id == "float" and not node.keywords
+        return plain and isinstance(one, ast.Name) and one.id in self.numbers
 
     def _binary(self, node: ast.BinOp, scope: Scope) -> ir.Expr:
         parts = [self.expr(node.left, scope), self.expr(node.right, scope)]
@@ -112,15 +131,23 @@ class Expressions:
         )
 
     def _boolean(self, node: ast.BoolOp, scope: Scope) -> ir.Expr:
-        return ir.Operation(OPERATORS[type(node.op)], self.all(node.values, scope), position(node))
+        before, parts = self.numbers, list[ir.Expr]()
+        for value in node.values:
+            parts.append(self.expr(value, scope))
+            if isinstance(node.op, ast.And):
+                self.numbers |= shown(value)
+        self.numbers = before
+        return ir.Operation(OPERATORS[type(node.op)], parts, position(node))
 
     def _compare(self, node: ast.Compare, scope: Scope) -> ir.Expr:
         operator = OPERATORS.get(type(node.ops[0]), "") if len(node.ops) == 1 else ""
         return ir.Operation(operator, self.all([node.left, *node.comparators], scope), position(node))
 
     def _choice(self, node: ast.IfExp, scope: Scope) -> ir.Expr:
-        test, then, other = self.all([node.test, node.body, node.orelse], scope)
-        return ir.Choice(test, then, other, position(node), scope.next())
+        test = self.expr(node.test, scope)
+        with self.knowing(shown(node.test)):
+            then = self.expr(node.body, scope)
+        return ir.Choice(test, then, self.expr(node.orelse, scope), position(node), scope.next())
 
     def _sequence(self, node: ast.Tuple | ast.List | ast.Set, scope: Scope) -> ir.Expr:
         return ir.SequenceDisplay(self.all(node.elts, scope), position(node), scope.next())
@@ -147,21 +174,23 @@ class Expressions:
         self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope
     ) -> ir.Expr:
         """Lower a comprehension in place: its targets become locals of the function, under unique names."""
-        before, slot = dict(scope.renamed), scope.next()
+        before, slot, numbers = dict(scope.renamed), scope.next(), self.numbers
         lazy = isinstance(node, ast.GeneratorExp) and node is self.lazy
         loops: list[tuple[ir.Expr, ir.Expr, Sequence[ir.Expr]]] = []
         for generator in node.generators:
             source = self.expr(generator.iter, scope)
             for name in ast.walk(generator.target):
                 if isinstance(name, ast.Name):
+                    self.numbers -= {name.id}
                     scope.renamed[name.id] = f"{name.id}<{slot}>"
                     scope.bound.add(f"{name.id}<{slot}>")
             loops.append((self.expr(generator.target, scope), source, self.all(generator.ifs, scope)))
-        key = self.expr(node.key, scope) if isinstance(node, ast.DictComp) else None
-        made = node.value if isinstance(node, ast.DictComp) else node.elt
-        element = self.expr(made, scope)
-        scope.renamed = before
         tests = [test for generator in node.generators for test in generator.ifs]
+        made = node.value if isinstance(node, ast.DictComp) else node.elt
+        with self.knowing(frozenset[str]().union(*map(shown, tests))):
+            key = self.expr(node.key, scope) if isinstance(node, ast.DictComp) else None
+            element = self.expr(made, scope)
+        scope.renamed, self.numbers = before, numbers
         return ir.Comprehension(loops, key, element, position(node), slot, made, tests, lazy)
 
     def _starred(self, node: ast.Starred, scope: Scope) -> ir.Expr:

@@ -10,6 +10,7 @@ from tarl_lint.ir.context_managers import divided
 from tarl_lint.ir.effect_free import OWN_PRINT, only_tells
 from tarl_lint.ir.lower_expressions import OPERATORS, Expressions, position
 from tarl_lint.ir.match_patterns import captures, conditions
+from tarl_lint.ir.number_tests import shown, shown_after
 from tarl_lint.ir.program_exits import OWN_EXIT, ends_program, exception
 from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.read.source import Module
@@ -70,10 +71,12 @@ class Lowering(Expressions):
     def block(self, nodes: Sequence[ast.stmt], scope: Scope) -> list[ir.Stmt]:
         """Lower statements in order."""
         lowered: list[ir.Stmt] = []
-        for node in nodes:
-            method = STATEMENTS.get(type(node))
-            if method is not None:
-                lowered.extend(method(self, node, scope))
+        with self.knowing(frozenset()):
+            for number, node in enumerate(nodes):
+                method = STATEMENTS.get(type(node))
+                if method is not None:
+                    lowered.extend(method(self, node, scope))
+                self.numbers |= shown_after(node, nodes[number + 1 :])
         return lowered
 
     def _assign(self, node: ast.Assign, scope: Scope) -> list[ir.Stmt]:
@@ -102,9 +105,9 @@ class Lowering(Expressions):
 
     def _if(self, node: ast.If, scope: Scope) -> list[ir.Stmt]:
         test, number = self.expr(node.test, scope), scope.next()
-        return [
-            ir.If(number, position(node), test, self.block(node.body, scope), self.block(node.orelse, scope))
-        ]
+        with self.knowing(shown(node.test, node.body)):
+            body = self.block(node.body, scope)
+        return [ir.If(number, position(node), test, body, self.block(node.orelse, scope))]
 
     def _assert(self, node: ast.Assert, scope: Scope) -> list[ir.Stmt]:
         failed = ir.Raise(scope.next(), position(node), None)

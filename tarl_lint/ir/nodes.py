@@ -61,13 +61,17 @@ class Slice:
 
 @dataclass(slots=True, eq=False)
 class Call:
-    """A call; keyword None means `**`."""
+    """A call; keyword None means `**`.
+
+    `certain` marks a conversion that cannot fail, because a test around it has shown that its argument is a number.
+    """
 
     function: Expr
     arguments: Sequence[Expr]
     keywords: Sequence[tuple[str | None, Expr]]
     pos: Pos
     slot: int
+    certain: bool = False
 
     def inner(self, number: int = 0) -> Call:
         """Return a call that a library makes during this call, with its own slot; `number` counts such calls."""

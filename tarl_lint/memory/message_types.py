@@ -10,7 +10,7 @@ from typing import Final
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import UNKNOWN, Obj, Value, const, pointer
-from tarl_lint.message_fields import ELEMENTS, KNOWN_FIELDS
+from tarl_lint.message_fields import ELEMENTS, KNOWN_FIELDS, NUMBER_FIELDS, WHOLE
 
 MESSAGE_MODULE: Final = ".msg."  # part of the name of every message class
 NAMES: Final = frozenset(["__slots__", "_fields_and_field_types", "_slots"])
@@ -33,6 +33,19 @@ def type_of(ctx: Interpreter, obj: Obj) -> str:
         within = type_of(ctx, outer.parent) if outer.parent is not None else ""
         return ELEMENTS.get(within, {}).get(f"{outer.name}[]", "")
     return KNOWN_FIELDS.get(type_of(ctx, outer), {}).get(obj.name, "")
+
+
+def is_number(ctx: Interpreter, value: Value, *, whole: bool) -> bool:
+    """Return whether a value is a number in a message of a known type; with `whole`, a whole number."""
+    return bool(value.pts) and all(_is_number(ctx, obj, whole=whole) for obj in value.pts)
+
+
+def _is_number(ctx: Interpreter, obj: Obj, *, whole: bool) -> bool:
+    field, listed = (obj.parent, "[]") if obj.name.startswith("[") else (obj, "")
+    if field is None or field.parent is None:
+        return False
+    within = type_of(ctx, field.parent)
+    return f"{field.name}{listed}" in NUMBER_FIELDS.get(within, ()) and (not whole or within in WHOLE)
 
 
 def field_names(ctx: Interpreter, obj: Obj) -> tuple[str, ...]:

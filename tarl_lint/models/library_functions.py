@@ -30,6 +30,7 @@ from tarl_lint.models import (
     behaviour_trees,
     blackboards,
     callables,
+    certain_conversions,
     command_line,
     containers,
     drawings,
@@ -120,7 +121,7 @@ def named_by_settings(ctx: Interpreter, target: Obj) -> str:
 def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
     """Make the result depend on all arguments; store into the argument that is written according to the catalog."""
     name = qualified.rpartition(".")[2]
-    if (raises := fails(name)) is not None:
+    if (raises := fails(name)) is not None and not certain_conversions.certain(ctx, name, arguments, call):
         ctx.ops.may_fail(ctx, call_contexts.all_used(ctx, arguments), raises, frame)
     shaped = name in catalog.SHAPED and qualified not in ctx.config.named
     deps = call_contexts.all_used(ctx, (arguments[0][1:], arguments[1]) if shaped else arguments)
