@@ -17,10 +17,10 @@ def contains(ctx: Interpreter, holder: Value, name: Value, frame: Frame, slot: H
     """
     if not holder.pts or not all(heap.is_namespace(ctx, obj) for obj in holder.pts):
         return None
-    for obj in holder.pts:
+    for obj in holder.objects:
         ctx.store.look(obj)
     names = name.texts() or {
-        n for obj in holder.pts for n in [*obj.fields, heap.ANY] if not n.startswith("<")
+        n for obj in holder.objects for n in [*obj.fields, heap.ANY] if not n.startswith("<")
     }
     decides = existence(ctx, holder.objects, sorted(names), frame, slot) or NONE
     return Value(holder.deps | ctx.use(name) | decides)
