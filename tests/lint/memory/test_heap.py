@@ -14,7 +14,6 @@ from tarl_lint.memory import (
     abstract_gc,
     heap,
     joins,
-    namespaces,
     object_contents,
     reachable_data,
     recency,
@@ -296,21 +295,7 @@ def test_iteration_over_attributes_yields_their_names(ctx):
     assert not heap.is_namespace(ctx, other)
     ctx.store.put((obj, "*"), ONE)
     assert heap.attribute_names(ctx, obj) is None
-    table = recency.intern(ctx, "mapping", "table", "")
-    assert not heap.is_namespace(ctx, table)
-
-
-def test_stores_decide_which_names_are_in_a_namespace(ctx, frame):
-    obj = an_instance(ctx, a_class(ctx, "A"))
-    table = recency.intern(ctx, "mapping", "table", "")
-    ctx.store.put((obj, "speed"), Value(frozenset([ctx.node(frame, "speed", "data")])))
-    assert namespaces.existence(ctx, [obj], ["height"], frame, "here") is None
-    assert namespaces.existence(ctx, [obj], ["speed"], frame, "here") is not None
-    assert namespaces.contains(ctx, pointer(obj), const("speed"), frame, "there") is not None
-    absent = namespaces.contains(ctx, pointer(obj), const("height"), frame, "there")
-    assert absent is not None
-    assert absent.deps == frozenset()
-    assert namespaces.contains(ctx, pointer(table), const("speed"), frame, "there") is None
+    assert not heap.is_namespace(ctx, made(ctx, "mapping", "table"))
 
 
 @pytest.mark.parametrize(
