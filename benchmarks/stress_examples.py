@@ -1,6 +1,6 @@
 """The examples measured by stress.py: for each, a test, one of its drifts, and the nominal value.
 
-The simulator of `tank_external` runs in a process of its own and needs an installed ROS 2 (`make setup-ros2`).
+The simulator of `tank_external` runs in its own process and needs an installed ROS 2 (`make setup-ros2`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Make a node's `os._exit` end only this node.
 
-A forked child of a node is a copy of pytest. It may compute and end as a program does, but if it came back to the
-scheduler, it would run the rest of the tests a second time. It is therefore ended at the first call that waits.
+If a node forks, the child is a copy of pytest. It may compute and end as a program does. If it returned to the
+scheduler, it would run the rest of the tests a second time, so it is ended at its first call that waits.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _fork(fork: Callable[[], int], leave: Callable[[int], Any]) -> Callable[[], 
     def forked() -> int:
         task = running_task()
         if task is not None:
-            _flush()  # else the child would write the same text again
+            _flush()  # otherwise the child would write the buffered text a second time
         child = fork()
         if not child and task is not None:
             worker = getcurrent()
@@ -76,7 +76,7 @@ def _fork(fork: Callable[[], int], leave: Callable[[int], Any]) -> Callable[[], 
 
 
 def _status(error: BaseException) -> int:
-    """Return the exit status for an exception that ends a program; print what Python prints."""
+    """Return the exit status of a program that ends with an exception; print what Python would print."""
     if not isinstance(error, SystemExit):
         traceback.print_exception(error)
         return 1

@@ -23,7 +23,7 @@ def _noted(change: Callable[..., None], before: list[Path]) -> Callable[..., Non
 
 @contextmanager
 def _working_directory_kept() -> Iterator[None]:
-    """Return to the working directory from which a node moved, so that the next episode starts there, too."""
+    """Undo a node's changes of the working directory, so that all episodes start in the same one."""
     before: list[Path] = []
     real = {name: getattr(os, name) for name in ("chdir", "fchdir") if hasattr(os, name)}
     for name, change in real.items():
@@ -40,10 +40,7 @@ def _working_directory_kept() -> Iterator[None]:
 
 @contextmanager
 def interpreter_kept() -> Iterator[None]:
-    """Restore what nodes change in the interpreter.
-
-    That is the recursion limit, removed import paths and finders, and the working directory.
-    """
+    """Restore the recursion limit, the working directory, and the import paths and finders that nodes remove."""
     limit, paths, finders = sys.getrecursionlimit(), [*sys.path], [*sys.meta_path]
     try:
         with _working_directory_kept():

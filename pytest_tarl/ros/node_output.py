@@ -1,7 +1,7 @@
-"""Give nodes standard output streams that they cannot close, since pytest writes to the same streams.
+"""Give nodes standard output streams that they cannot close, because pytest writes to the same streams.
 
-A node may set `sys.stdout = io.TextIOWrapper(sys.stdout.buffer, encoding="utf-8")`. Python closes the buffer as soon as
-nothing refers to the new stream.
+A node may set `sys.stdout = io.TextIOWrapper(sys.stdout.buffer, encoding="utf-8")`. When Python collects the new
+stream, it closes the buffer, too.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ class Output:
 
     @property
     def buffer(self) -> Any:
-        """The binary stream, for nodes one that they cannot close."""
+        """The binary stream; nodes get one that they cannot close."""
         return self.real.buffer if running_task() is None else Buffer(self.real.buffer)
 
     def detach(self) -> Any:
-        """Return the binary stream; for nodes, this stream remains usable."""
+        """Return the binary stream; if a node calls this, the text stream remains usable."""
         self.real.flush()
         return self.real.detach() if running_task() is None else self.buffer
 
     def close(self) -> None:
-        """Close the stream, unless a node does so."""
+        """Close the stream, or only flush it if a node calls this."""
         self.real.flush() if running_task() is not None else self.real.close()
 
 
 class Buffer:
-    """The binary stream below a standard stream, as a node sees it, also after the episode."""
+    """The binary stream that nodes get from a standard stream; they cannot close it, even after the episode."""
 
     def __init__(self, real: Any) -> None:
         self.real = real
@@ -56,14 +56,14 @@ class Buffer:
         return getattr(self.real, name)
 
     def detach(self) -> Buffer:
-        """Return this stream, which remains usable."""
+        """Return this stream; it remains usable."""
         return self
 
     def _dealloc_warn(self, _: object) -> None:
-        """Give no warning if a stream of the node is collected before it is closed."""
+        """Suppress the warning of Python about a text stream that was not closed before it was collected."""
 
     def close(self) -> None:
-        """Write what is buffered."""
+        """Only flush the stream."""
         if not self.real.closed:
             self.real.flush()
 
@@ -85,5 +85,5 @@ def output_of_nodes() -> Iterator[None]:
 
 
 def _of_pytest(stream: object) -> bool:
-    """Return whether pytest has set a stream, to capture the output or to end that."""
+    """Return whether pytest set this stream, when it started or stopped capturing the output."""
     return stream in (sys.__stdout__, sys.__stderr__) or type(stream).__module__.startswith("_pytest.")

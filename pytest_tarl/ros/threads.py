@@ -84,7 +84,7 @@ class Lock:
             self._waiting.append(task)
             try:
                 clock.wait(until)
-            finally:  # after a timeout or an exception; `release` would wake this task instead of one that waits
+            finally:  # after a timeout or an exception, `release` must not wake this task instead of a waiting one
                 if task in self._waiting:
                     self._waiting.remove(task)
         self._held = True

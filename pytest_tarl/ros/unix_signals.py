@@ -68,8 +68,8 @@ class _Signals:
     def _call(self, handler: Callable[[int, Any], Any], number: int) -> None:
         """Call a handler, then wake the tasks in `pause`.
 
-        As in Python, the main program gets the exception of a handler. From other tasks, it is raised where the main
-        program waits.
+        As in Python, an exception of the handler goes to the main program. If another task called the handler, the
+        exception is raised where the main program waits.
         """
         process = self.process
         try:
@@ -132,7 +132,7 @@ def signals_of_nodes() -> Iterator[None]:
         replace(signal, "getitimer", _getitimer)
         replace(signal, "pause", _pause)
         replace(signal, "raise_signal", lambda signals, number: signals.receive(number))
-        # all threads of a node are tasks in the thread of pytest, so every thread is the node
+        # all threads of a node run in pytest's thread, so a signal to any thread goes to the node
         replace(
             signal, "pthread_kill", lambda signals, _, number: signals.receive(number) if number else None
         )
