@@ -68,8 +68,14 @@ def chatter(pairs: Sequence[Pair]) -> float:
 
 
 def hunting(pairs: Sequence[Pair]) -> float:
-    """Return how much more often the values change their sign, as an error does that a controller cannot settle."""
-    return _more(pairs, lambda series: _switches(series.values > 0.0), SWITCHES)
+    """Return how much noisier values around zero have become, or how much more often they change their sign.
+
+    Return 0 for values that never change their sign under the drift.
+    """
+    if not any(pair.drifted.values.size and np.ptp(np.sign(pair.drifted.values)) > 1 for pair in pairs):
+        return 0.0
+    often = _more(pairs, lambda series: _switches(series.values > 0.0), SWITCHES)
+    return max(often, chatter(pairs), noise(pairs))
 
 
 def jumps(pairs: Sequence[Pair]) -> float:
