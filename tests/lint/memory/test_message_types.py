@@ -78,3 +78,26 @@ def test_a_store_into_one_of_several_fields_keeps_the_former_value(ctx, frame):
     updates.write_field(ctx, pointer(obj), "x", const(1))
     updates.weaken_field(ctx, pointer(obj), "x", const(2))
     assert ctx.store.get((obj, "x")) == Value(consts=frozenset([1, 2]))
+
+
+@pytest.mark.parametrize(
+    ("defined", "parts", "number", "whole"),
+    [
+        ("Float64", ("data",), True, False),
+        ("Int32", ("data",), True, True),
+        ("String", ("data",), False, False),
+        ("Twist", ("linear", "x"), True, False),
+        ("Twist", ("linear",), False, False),
+        ("LaserScan", ("ranges", "[0]"), True, False),
+        ("JointState", ("name", "[0]"), False, False),
+        ("", ("data",), False, False),
+    ],
+)
+def test_numeric_fields_of_known_messages_are_numbers(ctx, defined, parts, number, whole):
+    part = made = Obj("message", "got")
+    made.defined = defined
+    for name in parts:
+        part = part.sub(name)
+    assert message_types.is_number(ctx, pointer(part), whole=False) is number
+    assert message_types.is_number(ctx, pointer(part), whole=True) is whole
+    assert not message_types.is_number(ctx, UNKNOWN, whole=False)
