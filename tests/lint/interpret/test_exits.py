@@ -77,7 +77,7 @@ rospy.Subscriber("scan", Float64, scan)
 def scan(msg):
     try:
         with Siren():
-            float(msg.data)
+            int(msg.data)
     except ValueError:
         rospy.logwarn("no number")
 rospy.Subscriber("scan", Float64, scan)
