@@ -71,37 +71,40 @@ def run_online(
     `changeable` has the IDs of the sites with an operand that a repair can change, if known; these rank before all
     others. If `stage` is given, the comparison stops after it, and a later call may continue.
     """
-    members = current_members(fixture, plan)
     learner = _learner(fixture, options)
     side = _side(rollout, fixture, designation, options, plan, stage)
-    count = len(side.seeds)
-    looks = stage.looks if stage else planned(count, side.looks)
+    looks = stage.looks if stage else planned(len(side.seeds), side.looks)
     rarest = ceil(1 / looks[0].share) if stage else options.comparisons
     watch = _Watch(fixture.sample, designation, options, looks, permutations_for(options.alpha, rarest))
-    footprint = Footprint(count, tell) if tell else None
+    footprint = Footprint(len(side.seeds), tell) if tell else None
+    members = current_members(fixture, plan)
     recorded = run_episodes(side.rollout, side.seeds, drift, members, progress, learner, watch, footprint)
+    comparison, learned = _comparison(
+        side, fixture, designation, options, plan, drift, changeable, recorded, watch
+    )
+    pairs = tuple((look.episodes, found.verdict.p_worse) for look, found in watch.seen)
+    return Online(comparison, recorded, learned, pairs, certain(watch.seen[-1][1]))
+
+
+def _comparison(
+    side: _Side,
+    fixture: Fixture,
+    designation: Designation,
+    options: Options,
+    plan: Plan,
+    drift: str | None,
+    changeable: Collection[str] | None,
+    recorded: Recorded,
+    watch: _Watch,
+) -> tuple[Comparison, tuple[Floats, ...]]:
+    """Return the comparison of the deployed episodes with the recording, and their Sarsa tables."""
     difference = concluded(watch.seen, options.alpha)
     offline, online = aligned(fixture.sample, represented(recorded.sample))
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))
-    if options.learner:
-        tables = _learned_tables(fixture, recorded, learned, offline.cells)
-    else:
-        tables = _solved_tables(offline, online, fixture.sensors)
-    if difference.region.without:
-        tables = _lent(tables, offline, difference.region.without)
+    tables = _tables(fixture, options, recorded, learned, (offline, online), difference.region)
     near_half = _paper_cells(tables, offline.cells)
-    chosen = _rows(difference.region, near_half, offline.cells)
-    lists = _compared(_current(fixture, plan), tables, chosen)
+    lists = _compared(_current(fixture, plan), tables, _rows(difference.region, near_half, offline.cells))
     ranked = localize.prior((one.slices for one in lists), changeable)
-    again = EpisodePlan(side.seeds[0], drift, record=True)
-    spread = repeated(side.rollout, again, recorded) if recorded.simulator else ()
-    notes = (
-        *remarks.failing(difference.verdict),
-        *side.notes,
-        *recorded.notes,
-        *spread,
-        *remarks.early(recorded.sample, count),
-    )
     comparison = Comparison(
         test=fixture.test,
         drift=drift,
@@ -114,7 +117,10 @@ def run_online(
         paper_region=near_half,
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
-        notes=(*notes, *remarks.of_comparison(fixture, plan, offline, online, difference)),
+        notes=(
+            *_notes(side, drift, recorded, difference),
+            *remarks.of_comparison(fixture, plan, offline, online, difference),
+        ),
         parts=reward_parts.means(offline, online),
         lost=reward_parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
@@ -124,8 +130,37 @@ def run_online(
         purpose=designation.purpose,
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
-    pairs = tuple((look.episodes, found.verdict.p_worse) for look, found in watch.seen)
-    return Online(comparison, recorded, learned, pairs, certain(watch.seen[-1][1]))
+    return comparison, learned
+
+
+def _tables(
+    fixture: Fixture,
+    options: Options,
+    recorded: Recorded,
+    learned: Sequence[Floats],
+    samples: tuple[Sample, Sample],
+    region: Region,
+) -> list[Tables]:
+    """Return the utilities of each taint list in both worlds, learned or solved as the options say."""
+    offline, online = samples
+    if options.learner:
+        tables = _learned_tables(fixture, recorded, learned, offline.cells)
+    else:
+        tables = _solved_tables(offline, online, fixture.sensors)
+    return _lent(tables, offline, region.without) if region.without else tables
+
+
+def _notes(side: _Side, drift: str | None, recorded: Recorded, difference: Difference) -> tuple[str, ...]:
+    """Return what the user should know about the episodes."""
+    again = EpisodePlan(side.seeds[0], drift, record=True)
+    spread = repeated(side.rollout, again, recorded) if recorded.simulator else ()
+    return (
+        *remarks.failing(difference.verdict),
+        *side.notes,
+        *recorded.notes,
+        *spread,
+        *remarks.early(recorded.sample, len(side.seeds)),
+    )
 
 
 def _formulas(designation: Designation, offline: Sample, online: Sample) -> tuple[FormulaRow, ...]:

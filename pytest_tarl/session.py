@@ -206,11 +206,8 @@ class TarlSession:
         patches = tuple(map(Path, self._summary.patches))
         return joined(patches, self.config.invocation_params.dir)
 
-    def _run(self, item: pytest.Function, stage: Stage | None = None) -> Account | Compared:
-        from pytest_tarl.accounts import Account
-        from pytest_tarl.missions import Mission, NoFixtureError
-        from pytest_tarl.resuming.run import ResumableRun
-
+    def _designation(self, item: pytest.Function) -> Designation:
+        """Return the marker of a test. Raise SettingsError if the test does not use the fixtures that it needs."""
         marked = designated(item)
         if marked is None:
             raise SettingsError(f"{item.nodeid} has no tarl marker.")
@@ -222,6 +219,14 @@ class TarlSession:
                 "the marker declares drifts, but the test does not use the fixture `tarl_drift`, so they have no "
                 "effect: add the argument `tarl_drift` and build the world with it."
             )
+        return marked
+
+    def _run(self, item: pytest.Function, stage: Stage | None = None) -> Account | Compared:
+        from pytest_tarl.accounts import Account
+        from pytest_tarl.missions import Mission, NoFixtureError
+        from pytest_tarl.resuming.run import ResumableRun
+
+        marked = self._designation(item)
         progress = self._progress(item)
         mission = Mission(
             test=without_drift(item),
