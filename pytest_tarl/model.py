@@ -206,7 +206,8 @@ class OperandEffect:
     best: float
     effect: float
     factor: bool = False  # whether `best` is a factor for the operand instead of its new value
-    what: str = ""  # description if the operand follows a sensor or a variable; `best` is then the exponent
+    # description of an operand that follows a sensor or a variable, for which `best` is the exponent; otherwise ""
+    what: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -315,7 +315,7 @@ def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch)
         yield from remarks(mutants, found.accepted.candidate)
     yield from _of_the_range(order, examiner, watch)
     yield from (
-        f"a candidate was dropped because another test earns less: {told}"
+        f"a candidate was dropped because it lowers the reward of another test: {told}"
         for told in dict.fromkeys(examiner.lost)
     )
     if found.structure:

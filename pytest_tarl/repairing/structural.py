@@ -287,7 +287,7 @@ class Structures:
         return found
 
     def _once(self, known: Sequence[Template], among: Sequence[Spot]) -> _Group:
-        """Return the operands of the templates without parameters, such as swapped axes, at the first expressions.
+        """Return the operands of templates that have no parameters, such as `sign`, each at its first expressions.
 
         Each takes one episode, and none has a value that could be nearly right, so nothing leads the search to them.
         """

@@ -159,7 +159,7 @@ def test_pairs_agree_up_to_a_quarter_of_the_change(tmp_path: Path) -> None:
     assert suggested(tmp_path, {PUSH: (1.0, e)}, {PUSH: (1.0, e**1.3)}) == []
 
 
-def test_constants_beside_values_with_different_factors_change_alone(tmp_path: Path) -> None:
+def test_constant_changes_alone_if_its_neighbours_have_other_factors(tmp_path: Path) -> None:
     found = suggested(tmp_path, {FLEXOR: (1.0, 0.5), EXTENSOR: (1.0, 0.55)})
     assert [hint for hint in found if len(hint) > 1] == []
     assert {"FLEXOR_ON": 0.5} in found

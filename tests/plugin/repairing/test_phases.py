@@ -310,8 +310,8 @@ def test_notes_state_omissions_and_why_the_search_ended(
         "a module",
         "a remark",
         "a part",
-        "a candidate was dropped because another test earns less: t",
-        "a candidate was dropped because another test earns less: u",
+        "a candidate was dropped because it lowers the reward of another test: t",
+        "a candidate was dropped because it lowers the reward of another test: u",
         "no constant that was tried in 33 episodes sufficed, so 7 further episodes tried structural changes",
     ]
     refused = Refused(TWO, "not shown")

@@ -181,7 +181,7 @@ def test_other_test_of_the_node_must_not_lose(tank: pytest.Pytester) -> None:
     told = " ".join(done.stdout.str().split())
     assert not result(tank)["repair"]["accepted"]
     assert "none accepted: the best change found makes another recorded test of the node worse" in told
-    assert "another test earns less: test_pipe.py::test_pipe: " in told
+    assert "it lowers the reward of another test: test_pipe.py::test_pipe: " in told
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 

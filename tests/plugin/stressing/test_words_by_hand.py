@@ -234,7 +234,7 @@ def test_an_expected_failure_of_one_direction_is_printed_only_if_the_direction_h
         (curve(DOWN, {1.0: -1.0}), True),
     ],
 )
-def test_directions_hold_alone_without_a_smaller_failure(changed: Curve, alone: bool) -> None:
+def test_direction_is_safe_if_no_smaller_change_of_it_fails(changed: Curve, alone: bool) -> None:
     one = combined(mud=1.0, slope=0.5)
     others = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT) if ray is not changed.ray]
     (told,) = words.together(stress(*others, changed, combinations=(one,)))
@@ -332,7 +332,7 @@ def test_inner_failing_combination_violates_must_hold(must_hold: dict[str, Any],
     assert words.broken_promises(found) == ([told] if broken else [])
 
 
-def test_option_of_a_combination_is_compared_with_must_hold() -> None:
+def test_combination_with_an_option_is_checked_against_must_hold() -> None:
     found = stress(combinations=(combined(mud=3.0, camera=1.0),))
     inside = replace(found, must_hold={"mud": (2.0, 4.0), "camera": ("down",)})
     assert "mud=3 and camera='down'" in words.broken_promises(inside)[0]

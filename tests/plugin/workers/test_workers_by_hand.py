@@ -650,7 +650,7 @@ def script(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
     return run
 
 
-def test_a_worker_is_configured_as_its_run(script: Callable[..., dict[str, Any]]) -> None:
+def test_a_worker_has_the_configuration_of_its_run(script: Callable[..., dict[str, Any]]) -> None:
     options = {"plugins": ["no:terminal", "cov", "no:odd"], "maxfail": 1}
     done = script({"path": [*sys.path, "/lib"], "options": options, "target": "t.py::test_x"})
     assert done["given"] == (options, ["t.py::test_x", "-pno:terminal", "-pno:odd"])
