@@ -24,13 +24,13 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import (
     BOTTOM,
-    NO_CONSTANTS,
     NONE,
     UNKNOWN,
     Branches,
     Nodes,
     Obj,
     Value,
+    certain_pointer,
     join,
     lineage,
     pointer,
@@ -344,7 +344,7 @@ def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, 
             return made
     obj = blank_instance(ctx, cls, frame, call)
     _initialise(ctx, obj, cls, arguments, frame, call)
-    return Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
+    return certain_pointer(obj)
 
 
 def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> Obj:

@@ -10,7 +10,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
-from tarl_lint.memory.values import BOTTOM, NO_CONSTANTS, Obj, Value, const, join, lineage, pointer
+from tarl_lint.memory.values import BOTTOM, Obj, Value, certain_pointer, const, join, lineage, pointer
 
 METHODS: Final = frozenset(["__get__", "__set__", "__set_name__", "__setattr__", "__getattr__"])
 
@@ -34,7 +34,7 @@ def read(ctx: Interpreter, base: Value, value: Value, name: str, frame: Frame, p
         held = ctx.store.get((obj, name))
         for descriptor in _descriptors(ctx, obj, name):
             if held is None or descriptor in held.pts:
-                given = [_certain(obj), pointer(obj.info)] if isinstance(obj.info, Obj) else []
+                given = [certain_pointer(obj), pointer(obj.info)] if isinstance(obj.info, Obj) else []
                 said = _call(ctx, descriptor, "__get__", given, frame, pos)
                 if said is not None:
                     value = Value(value.deps, value.pts - {descriptor}, value.consts)
@@ -67,7 +67,7 @@ def write(ctx: Interpreter, base: Value, name: str, value: Value, frame: Frame, 
         done |= _set_property(ctx, base, name, value, frame, pos)
     for obj in base.objects if _used(ctx, "__set__") else ():
         for descriptor in _descriptors(ctx, obj, name):
-            given = [_certain(obj), value]
+            given = [certain_pointer(obj), value]
             done |= _call(ctx, descriptor, "__set__", given, frame, pos) is not None
     return done
 
@@ -122,11 +122,6 @@ def name_all(ctx: Interpreter, cls: Obj, frame: Frame, pos: ir.Pos) -> None:
             if descriptor.kind == "instance":
                 given = [pointer(cls), const(name)]
                 dunder_methods.special(ctx, pointer(descriptor), "__set_name__", given, frame, pos)
-
-
-def _certain(obj: Obj) -> Value:
-    """Return a pointer to the object whose attribute is accessed; it is not None, as it is for the class itself."""
-    return Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
 
 
 def _used(ctx: Interpreter, name: str) -> bool:

@@ -12,7 +12,7 @@ from tarl_lint.memory.frames import Former, Frame
 from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import AGING
-from tarl_lint.memory.values import NO_CONSTANTS, NONE, Nodes, Value, pointer
+from tarl_lint.memory.values import NONE, Nodes, Value, certain_pointer, pointer
 from tarl_lint.models import rows, sizes
 
 MAX_EACH = 4  # maximum number of known elements over which a comprehension is unrolled
@@ -30,11 +30,11 @@ def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -
     """
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     if not expr.items:
-        return Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
+        return certain_pointer(obj)
     items = [
         (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
     ]
-    where = Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
+    where = certain_pointer(obj)
     exact, count = True, 0
     for number, (item, value) in enumerate(items):
         value = entry(ctx, item, value, frame, (expr.slot, number))

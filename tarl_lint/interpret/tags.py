@@ -16,6 +16,7 @@ from tarl_lint.interpret import expressions, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.tag_tests import Test, calls_nothing, of_variable, tags_of, tests
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import every_statement
 from tarl_lint.memory import enumerations, heap
 from tarl_lint.memory.frames import REST, Former, Frame, Settled, Taken
 from tarl_lint.memory.store import Delta
@@ -127,18 +128,8 @@ def settle(
         for narrowed, body in ways:
             objects = former.pts - narrowed[key].pts if key in narrowed else frozenset()
             if objects:
-                spared = frozenset([(s.id, False), *((number, True) for number in _numbers(body))])
+                spared = frozenset([(s.id, False), *((one.id, True) for one in every_statement(body))])
                 frame.settled.setdefault(key, []).append(Settled(former, objects, spared))
-
-
-def _numbers(body: Sequence[ir.Stmt]) -> Iterator[int]:
-    """Yield the numbers of statements and of all statements inside them."""
-    for statement in body:
-        yield statement.id
-        for name in ("body", "orelse", "final"):
-            yield from _numbers(getattr(statement, name, ()))
-        for _, _, inner in getattr(statement, "handlers", ()):
-            yield from _numbers(inner)
 
 
 def restore(ctx: Interpreter, before: Narrowed, ways: Sequence[tuple[Narrowed, Delta]]) -> None:

@@ -176,7 +176,9 @@ def _after_waits(graph: _Graph, body: Sequence[ir.Stmt]) -> dict[int, set[Branch
             inner = (
                 around[-1] if loop is None else around[around.index(loop) - 1] if loop in around[1:] else None
             )
-            within = {s.id for s in _all(inner.body)} | {inner.id} if inner is not None else set[int]()
+            within = (
+                {s.id for s in every_statement(inner.body)} | {inner.id} if inner is not None else set[int]()
+            )
             for statement in closure.keys() - within:
                 ours = {branch for branch in closure[statement] if branch[0] == number}
                 if ours and statement != NEXT:
@@ -295,12 +297,12 @@ def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
     Statements after the `finally` that depend on a branch in it still depend on the branches inside the `try`.
     """
     blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
-    inside = {s.id for block in blocks for s in _all(block)}
+    inside = {s.id for block in blocks for s in every_statement(block)}
     inside.add(attempt.id)
     around = direct.get(attempt.id, frozenset())
     removed: dict[int, frozenset[Branch]] = {}
-    final = {s.id for s in _all(attempt.final)}
-    for statement in _all(attempt.final):
+    final = {s.id for s in every_statement(attempt.final)}
+    for statement in every_statement(attempt.final):
         branches = direct.get(statement.id, frozenset())
         kept = frozenset(branch for branch in branches if branch[0] not in inside)
         if kept != branches:
@@ -311,12 +313,12 @@ def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
         direct[number] = direct[number].union(*lost)
 
 
-def _all(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
+def every_statement(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
     """Yield statements and those inside them."""
     for s in body:
         yield s
         for inner in (*_bodies(s), *_loop_bodies(s)):
-            yield from _all(inner)
+            yield from every_statement(inner)
 
 
 def _breaks(body: Sequence[ir.Stmt]) -> bool:
@@ -338,7 +340,7 @@ def leaving(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
         if isinstance(s, ir.Return) or (isinstance(s, ir.Jump) and s.kind == "break"):
             yield s
         elif isinstance(s, ir.Loop):
-            yield from (one for one in _all(s.body) if isinstance(one, ir.Return))
+            yield from (one for one in every_statement(s.body) if isinstance(one, ir.Return))
         for inner in _bodies(s):
             yield from leaving(inner)
 

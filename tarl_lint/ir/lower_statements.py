@@ -285,10 +285,7 @@ if hasattr(ast, "TryStar"):
 
 
 def _annotated(node: ast.ClassDef) -> tuple[tuple[str, ...], frozenset[str], frozenset[str]]:
-    """Return the names that a class body annotates, except class variables, those below `_: KW_ONLY`, and those passed.
-
-    The last are the fields with `InitVar`.
-    """
+    """Return the fields that a class body annotates, those of them below `_: KW_ONLY`, and those with `InitVar`."""
     names: list[str] = []
     passed: list[str] = []
     start: int | None = None

@@ -68,16 +68,25 @@ def only_named(owner: Obj, name: str, given: Mapping[str, Value] | None) -> bool
     """Return whether the constructor takes a field only by its name: `kw_only` of the field or of its class."""
     if given is not None and "kw_only" in given:
         return says(given, "kw_only", True)
-    info = owner.info
-    statement = info.statement if isinstance(info, ClassInfo) else None
+    statement = _statement(owner)
     named = statement is not None and name in statement.only_named
     return named or _says_of_class(owner, "kw_only", True)
+
+
+def handed_on(cls: Obj) -> frozenset[str]:
+    """Return the fields of a class that its objects do not have, because `__post_init__` gets their values."""
+    statement = _statement(cls)
+    return frozenset() if statement is None else statement.passed
 
 
 def is_named_tuple(cls: object) -> bool:
     """Return whether a class is a named tuple, whose fields are also elements."""
     infos = [o.info for o in lineage(cls)] if isinstance(cls, Obj) else []
     return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
+
+
+def _statement(cls: Obj) -> ir.Class | None:
+    return cls.info.statement if isinstance(cls.info, ClassInfo) else None
 
 
 def _decorated(info: ClassInfo) -> bool:
@@ -87,7 +96,7 @@ def _decorated(info: ClassInfo) -> bool:
 
 def _says_of_class(cls: Obj, name: str, answer: bool) -> bool:
     """Return whether a decorator of a class has an option, as in `@dataclass(kw_only=True)`."""
-    statement = cls.info.statement if isinstance(cls.info, ClassInfo) else None
+    statement = _statement(cls)
     for decorator in statement.decorators if statement is not None else ():
         for keyword, value in decorator.keywords if isinstance(decorator, ir.Call) else ():
             if keyword == name and isinstance(value, ir.Const) and value.value is answer:

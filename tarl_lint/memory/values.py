@@ -298,6 +298,11 @@ def pointer(obj: Obj, deps: Nodes = NONE) -> Value:
     return Value(deps, frozenset([obj]))
 
 
+def certain_pointer(obj: Obj) -> Value:
+    """Return a value that certainly points to one object, so that it is not None."""
+    return Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
+
+
 def const(value: object) -> Value:
     """Return a value of one constant; the value is unknown if the constant is not hashable."""
     try:

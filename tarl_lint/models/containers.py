@@ -343,8 +343,7 @@ def _removed(ctx: Interpreter, it: Invocation) -> Value:
     held, decides = elements_of_any(ctx, it.base), NONE
     for value in it.arguments[0]:
         given = heap.elements(ctx, value) if it.name in REMOVING_EACH else value
-        for one, other in ((given, held), (held, given)):
-            decides |= equality.decides(ctx, one, other, it.frame, it.call.pos)
+        decides |= equality.either_decides(ctx, given, held, it.frame, it.call.pos)
     finds = it.name == "remove"
     decided = removal.decision(ctx, it.frame, it.call.slot, decides, base=it.base.deps, finds=finds)
     take_any(ctx, it.base, decided, it.frame, it.call)

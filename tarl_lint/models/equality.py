@@ -25,6 +25,11 @@ def decides(ctx: Interpreter, value: Value, other: Value, frame: Frame, pos: ir.
     return found
 
 
+def either_decides(ctx: Interpreter, one: Value, other: Value, frame: Frame, pos: ir.Pos) -> Nodes:
+    """Return the data of two values that decides whether they are equal."""
+    return decides(ctx, one, other, frame, pos) | decides(ctx, other, one, frame, pos)
+
+
 def selected(ctx: Interpreter, frame: Frame, slot: Hashable, decides: Nodes, way: str = "selected") -> int:
     """Return a node of the current statement under one more condition, which depends on `decides`."""
     inner = list(ctx.guards)

@@ -61,7 +61,7 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
             value = unpacked if unpacked is not None else _preset(ctx, owner, name, frame, call, number)
         if value is None:
             continue
-        if name in _passed(owner):
+        if name in record_fields.handed_on(owner):
             passed[name] = value
             continue
         ctx.store.put((obj, name), value)
@@ -76,12 +76,6 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
     _after(ctx, obj, cls, passed, frame, call)
 
 
-def _passed(cls: Obj) -> frozenset[str]:
-    """Return the fields of a class that its objects do not have, because `__post_init__` gets their values."""
-    statement = cls.info.statement if isinstance(cls.info, ClassInfo) else None
-    return frozenset() if statement is None else statement.passed
-
-
 def _after(
     ctx: Interpreter, obj: Obj, cls: Obj, passed: Mapping[str, Value], frame: Frame, call: ir.Call
 ) -> None:
@@ -90,7 +84,9 @@ def _after(
         after = ctx.store.get((owner, "__post_init__"))
         if after is not None:
             given = [
-                passed.get(name, UNKNOWN) for of, name in record_fields.fields(cls) if name in _passed(of)
+                passed.get(name, UNKNOWN)
+                for of, name in record_fields.fields(cls)
+                if name in record_fields.handed_on(of)
             ]
             calls.call_value(ctx, heap.bind(ctx, after, obj, owner), (given, {}), frame, call)
             return

@@ -76,8 +76,7 @@ def difference(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame:
     """Return `a - b`: the elements of `a`; comparisons with those of `b` decide which ones, and how many."""
     first, second = (heap.elements(ctx, value) for value in values)
     decides = NONE.union(*(value.deps for value in values), *(length(ctx, value) for value in values))
-    for one, other in ((first, second), (second, first)):
-        decides |= equality.decides(ctx, one, other, frame, expr.pos)
+    decides |= equality.either_decides(ctx, first, second, frame, expr.pos)
     left = ctx.reached(equality.selected(ctx, frame, ("left", expr.pos), decides))
     obj = recency.allocate(ctx, "sequence", frame, ("combined", expr.pos))
     updates.add_element(ctx, pointer(obj), Value(first.deps | left, first.pts, first.consts))

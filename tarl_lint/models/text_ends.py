@@ -9,6 +9,7 @@ from typing import Final
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import every_statement
 from tarl_lint.memory.frames import Frame
 
 JOINING: Final = ("+", "text")  # operators whose result consists of all operands in order
@@ -89,14 +90,10 @@ def _of_variable(
 
 def _assignments(body: Sequence[ir.Stmt]) -> Iterator[tuple[str, ir.Expr]]:
     """Yield the variables that statements assign, with the assigned expressions."""
-    for s in body:
+    for s in every_statement(body):
         if isinstance(s, ir.Assign):
             for target in s.targets:
                 if isinstance(target, ir.Name):
                     yield target.name, s.value
         elif isinstance(s, ir.Loop) and isinstance(s.target, ir.Name):
             yield s.target.name, ir.Const(None, s.pos)
-        for name in ("body", "orelse", "final"):
-            yield from _assignments(getattr(s, name, ()) or ())
-        for handler in s.handlers if isinstance(s, ir.Try) else ():
-            yield from _assignments(handler[2])

@@ -82,6 +82,16 @@ BOTH = """\
                 continue
             job = self.jobs.get()
             job.run(self)
+### a class whose statements have the same numbers
+            if isinstance(job, Cast):
+                class Record:
+                    a, b, c, d = 1, 2, 3, 4
+                    e = 5; f = 6; g = 7; h = 8; i = 9; j = 10; k = 11; l = 12; m = 13; n = 14; o = 15; p = 16
+                    q = 17; r = 18; s = 19; t = 20; u = 21; v = 22; w = 23; x = 24; y = 25; z = 26
+                self.skipped += Record.a
+            if self.stormy:
+                continue
+            job.run(self)
 ### a test that may hold for both
             if (isinstance(job, Cast) or self.skipped) and self.stormy:
                 continue

@@ -98,3 +98,15 @@ def test_instances_without_equality_are_compared_by_identity(ctx):
     assert record_fields.compared(ctx, plain) is None
     assert record_fields.compared_by_identity(plain)
     assert record_fields.compared_by_identity(a_class(ctx, "@dataclass(eq=False)\nclass Own:\n    a: int"))
+
+
+def test_fields_with_init_var_are_handed_on(ctx):
+    text = """
+        @dataclass
+        class Base:
+            a: float
+            b: InitVar[float]
+            c: "dataclasses.InitVar[int]" = 0
+    """
+    assert record_fields.handed_on(a_class(ctx, text)) == {"b", "c"}
+    assert record_fields.handed_on(recency.intern(ctx, "class", "other", "other")) == frozenset()

@@ -17,6 +17,7 @@ from tarl_lint.memory.values import (
     Obj,
     Symbolic,
     Value,
+    certain_pointer,
     closure_of,
     const,
     function_of,
@@ -130,6 +131,9 @@ def test_objects_are_iterated_in_order_of_creation():
     objects = [Obj("lib", key) for key in range(20)]
     assert in_order(frozenset(objects)) == objects
     assert Value(pts=frozenset(objects)).objects == objects
+    assert pointer(objects[0]).keys() is None
+    assert certain_pointer(objects[0]).keys() == frozenset()
+    assert certain_pointer(objects[0]).pts == {objects[0]}
     assert pointer(objects[0], frozenset([4])) == Value(frozenset([4]), frozenset([objects[0]]))
 
 
