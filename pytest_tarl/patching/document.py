@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import pairwise
@@ -66,6 +66,15 @@ class Document:
     def parents(self) -> dict[ast.AST, ast.AST]:
         """Map every node to its parent."""
         return {child: node for node in ast.walk(self.tree) for child in ast.iter_child_nodes(node)}
+
+    @cached_property
+    def statements_at(self) -> Mapping[int, Sequence[ast.stmt]]:
+        """Map each line to the statements that start there, in the order of `ast.walk`."""
+        found: dict[int, list[ast.stmt]] = {}
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.stmt):
+                found.setdefault(node.lineno, []).append(node)
+        return found
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:

@@ -314,7 +314,7 @@ class Examiner:
         if better == candidate:
             better = centred(candidate, trials, self.mutants.mutate, goal, reference, self.ledger.knows)
         # if the centred value was examined before, examine the original value
-        return candidate if self.ledger.alike(better) else better
+        return candidate if self.ledger.knows(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:
         """Return the result of a similar candidate, examined or waiting for its test, or None."""

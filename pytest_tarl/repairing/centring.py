@@ -27,18 +27,13 @@ MOVES = 3  # maximum number of moves in one direction with one ratio
 ASIDE = (1.25, 0.8, 1.12, 0.89)
 
 
-def none_examined(_: Candidate) -> bool:
-    """Return False: the default if no value was examined before."""
-    return False
-
-
 def centred(
     candidate: Candidate,
     trials: Trials,
     mutate: Mutate,
     goal: Goal,
     reference: Reference,
-    examined: Callable[[Candidate], bool] = none_examined,
+    examined: Callable[[Candidate], bool],
 ) -> Candidate:
     """Return the candidate with the best value found by hill climbing on known seeds.
 

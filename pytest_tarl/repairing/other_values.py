@@ -139,7 +139,7 @@ class Others:
             if enough and self._mends(middle, refused, trials):
                 good.append(middle)
             between.told(STRONG[0] if enough else WEAK[0])
-        if good and self.ledger.alike(good[len(good) // 2]) is None:
+        if good and not self.ledger.knows(good[len(good) // 2]):
             # the refused value earned more on known missions, so centring would move this value back towards it
             self.chosen.add(good[len(good) // 2])
             yield good[len(good) // 2]

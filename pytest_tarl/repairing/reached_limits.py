@@ -128,10 +128,10 @@ def _at(values: Series, bound: float) -> Bools:
 
 def _test(source: Document, line: int) -> ast.expr | None:
     """Return the condition of the statement at a line, or the comparison that the statement stores or returns."""
-    for node in ast.walk(source.tree):
-        if isinstance(node, ast.If | ast.While) and node.lineno == line:
+    for node in source.statements_at.get(line, ()):
+        if isinstance(node, ast.If | ast.While):
             return node.test
-        if isinstance(node, ast.Assign | ast.Return) and node.lineno == line:
+        if isinstance(node, ast.Assign | ast.Return):
             return node.value if isinstance(node.value, ast.Compare | ast.BoolOp) else None
     return None
 

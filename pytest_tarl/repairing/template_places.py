@@ -153,10 +153,7 @@ def _expressions(
     `numeric` says whether the recording has numbers for the statement; `returned` names the functions that returned
     numbers.
     """
-    statements = [
-        node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
-    ]
-    for statement in statements:
+    for statement in source.statements_at.get(span.line, ()):
         if isinstance(statement, ast.If | ast.While):
             for node in ast.walk(statement.test):
                 if isinstance(node, ast.Compare) and len(node.ops) == 1 and _orders(node.ops[0]):
@@ -179,20 +176,17 @@ def _expressions(
 
 def _fields(source: Document, span: Span) -> Iterator[tuple[ast.expr, str, str]]:
     """Yield (message, kind, field) for the fields that several statements build before the call that publishes them."""
-    for node in ast.walk(source.tree):
-        if isinstance(node, ast.Expr) and node.lineno == span.line:
+    for node in source.statements_at.get(span.line, ()):
+        if isinstance(node, ast.Expr):
             yield from ((message, FIELD, built.field) for message, built in built_fields(source, node))
 
 
 def _sides(source: Document, span: Span) -> Iterator[ast.expr]:
     """Yield both sides of each difference of two values that vary, such as a target and a position."""
-    for statement in ast.walk(source.tree):
-        if (
-            not isinstance(statement, ast.Assign | ast.AnnAssign | ast.Return)
-            or statement.lineno != span.line
-        ):
+    for statement in source.statements_at.get(span.line, ()):
+        if not isinstance(statement, ast.Assign | ast.AnnAssign | ast.Return) or statement.value is None:
             continue
-        for node in ast.walk(statement.value) if statement.value is not None else ():
+        for node in ast.walk(statement.value):
             if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub):
                 sides = (node.left, node.right)
                 if all(isinstance(side, ast.Name | ast.Attribute | ast.Subscript) for side in sides):

@@ -106,6 +106,6 @@ def _assigned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str,
             source = document(step.span.path, order.analysis.sources[step.span.path])
         except (RepairError, KeyError):
             continue
-        for node in ast.walk(source.tree):
-            if size and isinstance(node, ast.Assign) and node.lineno == step.span.line:
+        for node in source.statements_at.get(step.span.line, ()):
+            if size and isinstance(node, ast.Assign):
                 yield ast.unparse(node.targets[0]), size

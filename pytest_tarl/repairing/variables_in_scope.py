@@ -40,12 +40,8 @@ def _held(order: Order, span: Span, used: Operand) -> str:
         node = source.find(used.span)
     except (RepairError, KeyError):
         return ""
-    for statement in ast.walk(source.tree):
-        if (
-            isinstance(statement, ast.Assign)
-            and statement.lineno == span.line
-            and len(statement.targets) == 1
-        ):
+    for statement in source.statements_at.get(span.line, ()):
+        if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
             target, here, there = statement.targets[0], source.method(statement), source.method(node)
             if isinstance(target, ast.Name):
                 function = source.function(node)

@@ -200,11 +200,11 @@ class Attempts:
             yield from self._later(unit, guard, factor, pair)
         else:
             yield from preferred
-        if near and not holds:
-            yield from self._moved_on(unit, candidate, factor, pair)
-            yield from self._nearly(unit, candidate, factor, pair)
-            yield from self._following(unit, candidate, factor, pair)
-            yield from self.uses.alone(unit, guard, factor, pair)
+            if near:
+                yield from self._moved_on(unit, candidate, factor, pair)
+                yield from self._nearly(unit, candidate, factor, pair)
+                yield from self._following(unit, candidate, factor, pair)
+                yield from self.uses.alone(unit, guard, factor, pair)
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
 

@@ -102,8 +102,8 @@ def offset(pairs: Sequence[Pair]) -> float:
     """
     both = [pair.together() for pair in pairs]
     size = scale(both)
-    ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in both]
-    if not size or any(one.size < FEWEST // 2 or other.size < FEWEST // 2 for one, other in ends):
+    ends = _ends(both)
+    if not size or _short(ends, FEWEST // 2):
         return 0.0
     designed, drifted = (fmean(abs(float(each[at].mean())) for each in ends) for at in (0, 1))
     left = min(designed / max(_largest(pair.designed.values) for pair in both), 1.0)
@@ -115,8 +115,8 @@ def offset(pairs: Sequence[Pair]) -> float:
 def swing(pairs: Sequence[Pair]) -> float:
     """Return how much the value swings slowly in the second half, compared with the designed missions."""
     least = STEADY * scale(pairs)
-    ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in pairs]
-    if not least or any(one.size < FEWEST or other.size < FEWEST for one, other in ends):
+    ends = _ends(pairs)
+    if not least or _short(ends, FEWEST):
         return 0.0
     designed, drifted = (fmean(float(each[at].std()) for each in ends) for at in (0, 1))
     return _grown(designed + least, drifted, SWINGS) * fmean(_smoothness(other) for _, other in ends)
@@ -149,8 +149,8 @@ def lag(pairs: Sequence[Pair]) -> float:
     An error that grows while its target moves faster shows that the controller only follows.
     """
     least = STEADY * scale(pairs)
-    ends = [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in pairs]
-    if not least or any(one.size < FEWEST or other.size < FEWEST for one, other in ends):
+    ends = _ends(pairs)
+    if not least or _short(ends, FEWEST):
         return 0.0
     designed, drifted = (fmean(float(np.abs(each[at]).mean()) for each in ends) for at in (0, 1))
     return LAG * _grown(designed + least, drifted, LAGS) * fmean(_slowness(other) for _, other in ends)
@@ -251,6 +251,15 @@ def _past_zero(values: Floats) -> float:
     toward = smooth * float(np.sign(smooth[0]))
     far = float(toward.max())
     return max(-float(toward.min()), 0.0) / far if far > 0.0 else 0.0
+
+
+def _ends(pairs: Sequence[Pair]) -> list[tuple[Floats, Floats]]:
+    """Return the second halves of the designed and of the drifted values, for each pair."""
+    return [(_late(pair.designed.values), _late(pair.drifted.values)) for pair in pairs]
+
+
+def _short(ends: Sequence[tuple[Floats, Floats]], least: int) -> bool:
+    return any(one.size < least or other.size < least for one, other in ends)
 
 
 def _late(values: Floats) -> Floats:

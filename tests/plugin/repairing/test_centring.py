@@ -14,6 +14,7 @@ from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import SHIPPED, template
 from pytest_tarl.repairing.between import factor, stronger
 from pytest_tarl.repairing.centring import BEHIND, SEEDS, THIN, centred, moved
+from pytest_tarl.repairing.ledger import Ledger
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
@@ -46,7 +47,7 @@ def test_value_moves_towards_the_middle_of_good_values(best: float, off: float, 
     assert mutation is not None
     found = Candidate((mutation,), ALWAYS)
     before = trials(found, 0).total
-    moved = centred(found, trials, mutations, GOAL, REFERENCE)
+    moved = centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows)
     after = trials(moved, 0).total
     assert after >= before
     if before >= 9.0:
@@ -59,7 +60,7 @@ def test_value_moves_towards_the_middle_of_good_values(best: float, off: float, 
 def test_smaller_steps_are_skipped_after_ineffective_ones() -> None:
     trials = Trials(lambda _, __: Outcome(9.0, True), 100)
     found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
-    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows) == found
     assert trials.spent == SEEDS + 2 * BEHIND
 
 
@@ -69,7 +70,7 @@ def test_values_are_compared_on_known_seeds() -> None:
     found = Candidate((Mutation(LITERAL, 4.0),), ALWAYS)
     for seed in range(3, 8):
         trials(found, seed)
-    assert centred(found, trials, mutations, goal, REFERENCE) == found
+    assert centred(found, trials, mutations, goal, REFERENCE, Ledger().knows) == found
     assert trials.spent == SEEDS
 
 
@@ -80,7 +81,7 @@ def test_value_does_not_move_to_a_failing_value() -> None:
 
     trials = Trials(run, 100)
     found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
-    moved_to = centred(found, trials, mutations, GOAL, REFERENCE)
+    moved_to = centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows)
     reached = factor(moved_to.mutations[0])
     assert reached is not None
     assert 2.2 < reached < 2.9
@@ -89,9 +90,9 @@ def test_value_does_not_move_to_a_failing_value() -> None:
 def test_value_does_not_move_to_one_that_loses_missions() -> None:
     trials = world(4.0, 0.5)
     found = Candidate((Mutation(LITERAL, 5.0),), ALWAYS)
-    assert centred(found, trials, mutations, GOAL, REFERENCE) != found
+    assert centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows) != found
     trials.loses = lambda one: one != found
-    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows) == found
 
 
 def test_climb_ends_at_a_value_that_was_examined() -> None:
@@ -100,7 +101,7 @@ def test_climb_ends_at_a_value_that_was_examined() -> None:
 
     found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
     free, stopped = Trials(rising, 100), Trials(rising, 100)
-    centred(found, free, mutations, GOAL, REFERENCE)
+    centred(found, free, mutations, GOAL, REFERENCE, Ledger().knows)
     before: list[Candidate] = []
 
     def examined(one: Candidate) -> bool:
@@ -115,7 +116,7 @@ def test_climb_ends_at_a_value_that_was_examined() -> None:
 def test_candidate_that_fails_on_a_known_seed_stays() -> None:
     trials = world(4.0, 0.1)
     found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)
-    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows) == found
     assert trials.spent == 1
 
 
@@ -124,7 +125,7 @@ def test_signs_and_booleans_have_no_neighbours(value: float) -> None:
     constant = operand(5, "False", False) if value is True else LITERAL
     found = Candidate((Mutation(constant, value),), ALWAYS)
     trials = Trials(lambda _, __: Outcome(9.4, passed=True), 100)
-    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows) == found
     assert trials.spent == SEEDS
 
 
@@ -158,7 +159,9 @@ def test_a_value_stays_one_step_away_from_failing_values() -> None:
 
     mutation = mutations(NAMED, 4.2)
     assert mutation is not None
-    found = centred(Candidate((mutation,), ALWAYS), Trials(run, 100), mutations, GOAL, REFERENCE)
+    found = centred(
+        Candidate((mutation,), ALWAYS), Trials(run, 100), mutations, GOAL, REFERENCE, Ledger().knows
+    )
     value = factor(found.mutations[0])
     assert value is not None
     assert 2.8 * 1.03 < value < 4.2
@@ -171,5 +174,5 @@ def test_value_is_not_fitted_to_seeds_that_are_hard_as_designed(designed: float,
     mutation = mutations(LITERAL, 2.5)
     assert mutation is not None
     found = Candidate((mutation,), ALWAYS)  # earns 9.45
-    assert (centred(found, trials, mutations, GOAL, REFERENCE) == found) is kept
+    assert (centred(found, trials, mutations, GOAL, REFERENCE, Ledger().knows) == found) is kept
     assert trials.beside == SEEDS

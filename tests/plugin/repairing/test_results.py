@@ -254,7 +254,7 @@ def test_value_increases_while_it_loses_much_of_the_margin(by: float, expected: 
 
     goal = replace(GOAL, passing=True)
     trials = Trials(run, 99)
-    found = centred(scaled(by), trials, mutations, goal, MARGIN)
+    found = centred(scaled(by), trials, mutations, goal, MARGIN, Ledger().knows)
     assert factors(found) == pytest.approx([expected], rel=0.02)
 
 
